@@ -304,6 +304,7 @@ fn without_a_device_pictures_are_discs_and_maps() {
         ("Maxwell's speeds", 5, "gas"),
         ("A piston falls onto a gas", 2, "piston"),
         ("A lake at rest over a hill", 2, "flood"),
+        ("A dam breaks above a town", 2, "city"),
         ("A cold pane", 60, "dew"),
     ] {
         let Some(mut stage) = stage_without_device("sketches") else { return };

@@ -51,7 +51,7 @@ pub use corpuscle_terrain as terrain;
 pub use corpuscle_video as video;
 
 #[cfg(feature = "gpu")]
-pub use backend::{Choice, FEWEST_ON_GPU};
+pub use backend::{Choice, Cpu, FEWEST_ON_GPU};
 pub use camera_path::{CameraStation, camera_path};
 pub use error::Error;
 #[cfg(feature = "film")]

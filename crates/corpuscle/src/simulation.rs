@@ -179,6 +179,19 @@ impl Simulation {
         self.advance(time, stop, observer).map(|_| ())
     }
 
+    /// Advances as [`Model::advance_to`] does, for a browser, where no thread may wait for a GPU: see
+    /// [`GpuModel::advance_later`](corpuscle_model::GpuModel::advance_later).
+    ///
+    /// # Errors
+    /// Where the model breaks down.
+    #[cfg(feature = "gpu")]
+    pub async fn advance_later(&mut self, time: f64, stop: &AtomicBool) -> Result<(), Error> {
+        if let Some(model) = self.model.on_gpu_mut() {
+            return Ok(model.advance_later(time, stop).await?);
+        }
+        Ok(self.model.advance_to(time, stop)?)
+    }
+
     /// The state at the start of a part of the run, to measure its rate.
     fn meter(&self, start: Instant) -> Result<Meter, Error> {
         let counted = models::of(&self.scene)?.work();

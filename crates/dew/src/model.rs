@@ -118,7 +118,7 @@ impl Model for Dew {
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         if self.gpu_solver.is_some() {
-            return self.advance_on_gpu(time, stop);
+            return corpuscle_gpu::wait_for(self.advance_on_gpu(time, stop));
         }
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
@@ -139,7 +139,7 @@ impl Model for Dew {
         observer: &mut dyn AdvanceObserver,
     ) -> Result<(), ModelError> {
         if self.gpu_solver.is_some() {
-            self.advance_measured(time, stop, observer, None)
+            corpuscle_gpu::wait_for(self.advance_measured(time, stop, observer, None))
         } else {
             advance_with(self, time, stop, observer)
         }

@@ -43,20 +43,20 @@ pub fn uniform<T: NoUninit>(gpu: &Gpu, label: &'static str, value: &T) -> wgpu::
     buffer
 }
 
-/// Reads the first `length` elements back. Waits for the device.
+/// Reads the first `length` elements back: see [`wait_for`].
 ///
 /// # Errors
 /// [`GpuError::Lost`].
-pub fn read<T: Pod>(gpu: &Gpu, buffer: &wgpu::Buffer, length: usize) -> Result<Vec<T>, GpuError> {
-    let [elements] = read_together(gpu, [(buffer, length * size_of::<T>())], bytemuck::pod_collect_to_vec)?;
+pub async fn read<T: Pod>(gpu: &Gpu, buffer: &wgpu::Buffer, length: usize) -> Result<Vec<T>, GpuError> {
+    let [elements] = read_together(gpu, [(buffer, length * size_of::<T>())], bytemuck::pod_collect_to_vec).await?;
     Ok(elements)
 }
 
-/// Reads the first bytes of several buffers back, of each the given number, and waits for the device once.
+/// Reads the first bytes of several buffers back, of each the given number, and waits for the device once: see [`wait_for`].
 ///
 /// # Errors
 /// [`GpuError::Lost`].
-pub fn read_together<T, const COUNT: usize>(
+pub async fn read_together<T, const COUNT: usize>(
     gpu: &Gpu,
     parts: [(&wgpu::Buffer, usize); COUNT],
     taken_as: fn(&[u8]) -> T,
@@ -77,8 +77,14 @@ pub fn read_together<T, const COUNT: usize>(
         }
         start += length;
     }
-    let mapped = Mapping::begin(gpu, copy, encoder).wait()?;
+    let mapped = Mapping::begin(gpu, copy, encoder).filled().await?;
     Ok(std::array::from_fn(|part| taken_as(&mapped[starts[part]..starts[part] + parts[part].1])))
+}
+
+/// Runs what reads back from a device to its end, on this thread. Outside a browser every read-back waits for the device itself, so that this
+/// adds nothing; in a browser no thread may wait, and read-backs are to be awaited instead.
+pub fn wait_for<T>(reading: impl Future<Output = T>) -> T {
+    pollster::block_on(reading)
 }
 
 /// A read-back that has begun: the device was given what fills a buffer of usage `MAP_READ`.
@@ -105,17 +111,10 @@ impl Mapping {
     ///
     /// # Errors
     /// [`GpuError::Lost`].
-    pub fn wait(self) -> Result<wgpu::BufferView, GpuError> {
+    pub async fn filled(mut self) -> Result<wgpu::BufferView, GpuError> {
+        // Does nothing in a browser, whose answer comes when it is awaited.
         let wait = wgpu::PollType::Wait { submission_index: Some(self.filled.clone()), timeout: None };
         self.gpu.device.poll(wait).map_err(|error| self.lost(error.to_string()))?;
-        pollster::block_on(self.later())
-    }
-
-    /// The same where one may not wait, as in a browser.
-    ///
-    /// # Errors
-    /// [`GpuError::Lost`].
-    pub async fn later(mut self) -> Result<wgpu::BufferView, GpuError> {
         let answer = (&mut self.answer).await;
         self.gpu.check()?;
         answer.map_err(|error| self.lost(error.to_string()))?.map_err(|error| self.lost(error.to_string()))?;

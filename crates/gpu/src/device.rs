@@ -92,7 +92,9 @@ impl Gpu {
         let software = info.device_type == wgpu::DeviceType::Cpu;
         let kind = if software { GpuKind::Software } else { GpuKind::Hardware };
         let faults = Faults::of(&device);
-        Self { device, queue, name: info.name, kind, faults, compiled: Compiled::default() }
+        // Browsers tell none.
+        let name = if info.name.is_empty() { "the browser's device".into() } else { info.name };
+        Self { device, queue, name, kind, faults, compiled: Compiled::default() }
     }
 
     /// Whether this is the same device, opened once: what lies on one is not on another. (wgpu's own comparison takes the first devices of two

@@ -20,7 +20,7 @@ mod sort;
 mod steps;
 mod texture;
 
-pub use buffer::{filled, read, read_together, storage, uniform};
+pub use buffer::{filled, read, read_together, storage, uniform, wait_for};
 pub use declare::{
     AtomicI32, AtomicU32, Binding, Buffers, DECLARED, Declaration, Layout, Member, Shared, SharedConstant, SharedPiece,
     SharedStruct,

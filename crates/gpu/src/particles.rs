@@ -1,7 +1,7 @@
 //! Particles of a model that are drawn where they lie: whoever moves them writes them, whoever draws them reads them, and
 //! nothing is downloaded to the host.
 
-use crate::{Gpu, GpuError, Shared, SharedPiece, read, storage};
+use crate::{Gpu, GpuError, Shared, SharedPiece, read, storage, wait_for};
 
 crate::declare! {
     constants {}
@@ -88,8 +88,9 @@ impl DeviceParticles {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<DeviceParticle>, GpuError> {
-        let count = read::<u32>(gpu, &self.buffer, 1)?[0] as usize;
-        let bytes = read::<u8>(gpu, &self.buffer, HEADER + count.min(self.room) * size_of::<DeviceParticle>())?;
+        let count = wait_for(read::<u32>(gpu, &self.buffer, 1))?[0] as usize;
+        let bytes =
+            wait_for(read::<u8>(gpu, &self.buffer, HEADER + count.min(self.room) * size_of::<DeviceParticle>()))?;
         let particles: Vec<DeviceParticle> = bytemuck::pod_collect_to_vec(&bytes[HEADER..]);
         Ok(particles.into_iter().filter(|particle| particle.volume > 0.0).collect())
     }

@@ -88,12 +88,12 @@ impl Stopwatch {
         encoder.resolve_query_set(&self.queries, 0..self.marks.len() as u32, &self.resolved, 0);
     }
 
-    /// Takes up the times of the last pass. Waits for the device.
+    /// Takes up the times of the last pass: see [`crate::wait_for`].
     ///
     /// # Errors
     /// [`GpuError::Lost`].
-    pub fn read(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
-        let ticks: Vec<u64> = buffer::read(gpu, &self.resolved, self.marks.len())?;
+    pub async fn read(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
+        let ticks: Vec<u64> = buffer::read(gpu, &self.resolved, self.marks.len()).await?;
         let period = f64::from(gpu.queue.get_timestamp_period());
         for (name, ended) in self.marks.drain(..).skip(1).zip(ticks.windows(2)) {
             let taken = self.taken.entry(name).or_default();

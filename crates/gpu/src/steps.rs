@@ -124,21 +124,23 @@ impl Batches {
     ///
     /// # Errors
     /// Those of `read`, and [`GpuError::Lost`].
-    pub fn run<T>(
+    pub async fn run<T>(
         &mut self,
         count: u32,
         (status, uploaded): (&wgpu::Buffer, &impl NoUninit),
         work: impl FnOnce(&mut Pass<'_>),
-        read: impl FnOnce(&Gpu) -> Result<T, GpuError>,
+        read: impl AsyncFnOnce(&Gpu) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
         let began = Instant::now();
         self.gpu.queue.write_buffer(status, 0, bytemuck::bytes_of(uploaded));
         self.submit(work);
-        let done = read(&self.gpu)?;
+        let done = read(&self.gpu).await?;
         let took = began.elapsed().as_secs_f64();
         self.seconds += took;
         self.adapt_size(count, took);
-        self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
+        if let Some(stopwatch) = &mut self.stopwatch {
+            stopwatch.read(&self.gpu).await?;
+        }
         Ok(done)
     }
 

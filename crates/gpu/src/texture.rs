@@ -1,6 +1,6 @@
 //! Textures to draw into, and back to main memory.
 
-use crate::buffer::Mapping;
+use crate::buffer::{Mapping, wait_for};
 use crate::{Gpu, GpuError, Image};
 
 /// A texture of `size` `[width, height]`, pixels.
@@ -35,14 +35,13 @@ pub fn texture_2d(
 /// # Errors
 /// [`GpuError::Lost`].
 pub fn read_rgba8(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Image, GpuError> {
-    let (mapping, size) = begin_reading(gpu, texture);
-    Ok(image(&mapping.wait()?, size))
+    wait_for(read_rgba8_later(gpu, texture))
 }
 
 /// [`read_rgba8`] where one may not wait, as in a browser. What the texture holds now is read, whatever is drawn into it meanwhile.
 pub fn read_rgba8_later(gpu: &Gpu, texture: &wgpu::Texture) -> impl Future<Output = Result<Image, GpuError>> + use<> {
     let (mapping, size) = begin_reading(gpu, texture);
-    async move { Ok(image(&mapping.later().await?, size)) }
+    async move { Ok(image(&mapping.filled().await?, size)) }
 }
 
 /// Bytes of a row in the buffer that a texture is copied to.

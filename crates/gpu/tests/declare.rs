@@ -2,7 +2,7 @@
 
 use corpuscle_gpu::{
     Buffers, Gpu, Kernel, Layout, Pass, SharedStruct, check_layouts, check_layouts_in, check_shader, filled, read,
-    require_gpu, storage, uniform, wgpu,
+    require_gpu, storage, uniform, wait_for, wgpu,
 };
 
 corpuscle_gpu::declare! {
@@ -191,6 +191,9 @@ fn a_shader_gets_the_bindings_that_it_uses() {
     check_shader(&text).unwrap();
     check_shader(&text).unwrap();
     assert!(check_shader(&text.replace("@workgroup_size(1)", "@workgroup_size(512)")).is_err());
+    let bare = format!("{text}fn bare() {{\n    var sum: vec3f; // of all\n}}\n");
+    assert!(check_shader(&bare).unwrap_err().contains("var sum: vec3f;"));
+    check_shader(&bare.replace(": vec3f", " = vec3f()")).unwrap();
     let unknown = Memory::declaration().complete("test", &KERNEL.replace("found[0]", "lost[0]"), &[]).unwrap_err();
     assert!(unknown.to_string().contains("lost"), "{unknown}");
 }
@@ -235,7 +238,7 @@ fn what_the_host_writes_the_device_reads() {
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     task.run(&mut Pass::begin(&mut encoder, None), 1);
     gpu.queue.submit([encoder.finish()]);
-    let found: Vec<f32> = read(&gpu, &memory.found, 6).unwrap();
+    let found: Vec<f32> = wait_for(read(&gpu, &memory.found, 6)).unwrap();
     assert_eq!(found, [9.0, 2.0, 4.25, 42.0, 1.0 / 3.0, f32::MIN_POSITIVE]);
 }
 

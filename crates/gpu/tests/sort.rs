@@ -1,6 +1,6 @@
 //! The counting sort on the device sorts as one sorts.
 
-use corpuscle_gpu::{CellSort, Gpu, Pass, SortSlots, THREADS, read, require_gpu, sort_blocks, storage, wgpu};
+use corpuscle_gpu::{CellSort, Gpu, Pass, SortSlots, THREADS, read, require_gpu, sort_blocks, storage, wait_for, wgpu};
 
 /// Sorts particles of the given cells, with keys that run against their numbers; `order` and `start`.
 fn sorted(gpu: &Gpu, cell_of: &[u32], cells: usize) -> (Vec<u32>, Vec<u32>) {
@@ -27,8 +27,8 @@ fn sorted(gpu: &Gpu, cell_of: &[u32], cells: usize) -> (Vec<u32>, Vec<u32>) {
     sort.sort(&mut pass, &groups, SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 });
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
-    assert!(read::<u32>(gpu, &sort.counts, cells).unwrap().iter().all(|&count| count == 0));
-    (read(gpu, &sort.order, count).unwrap(), read(gpu, &sort.start, cells + 1).unwrap())
+    assert!(wait_for(read::<u32>(gpu, &sort.counts, cells)).unwrap().iter().all(|&count| count == 0));
+    (wait_for(read(gpu, &sort.order, count)).unwrap(), wait_for(read(gpu, &sort.start, cells + 1)).unwrap())
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::{AdvanceObserver, Frame, ModelError};
 use corpuscle_gpu::{DeviceParticles, Gpu, PassTiming};
+use std::pin::Pin;
 use std::sync::atomic::AtomicBool;
 
 /// What is shown of a model that steps on the device that draws, while it advances.
@@ -12,6 +13,9 @@ pub struct Glance {
     /// The particles that pictures show, in buffers of the device; they change with the next step. None where pictures show but drops.
     pub on_device: Option<DeviceParticles>,
 }
+
+/// An advance that awaits what it reads back from the GPU.
+pub type Advance<'a> = Pin<Box<dyn Future<Output = Result<(), ModelError>> + 'a>>;
 
 /// A model that can take its steps on a GPU, in single precision.
 pub trait GpuModel {
@@ -46,6 +50,13 @@ pub trait GpuModel {
         shown: (f64, bool),
         show: &mut dyn FnMut(Glance) -> f64,
     ) -> Result<(), ModelError>;
+
+    /// Advances as [`Model::advance_to`](crate::Model::advance_to) does, for a browser, where no thread may wait for the GPU: what is read back is
+    /// awaited. To be awaited to its end.
+    ///
+    /// # Errors
+    /// Those of [`Model::advance_to`](crate::Model::advance_to).
+    fn advance_later<'a>(&'a mut self, time: f64, stop: &'a AtomicBool) -> Advance<'a>;
 
     /// Wall-clock time that the GPU has spent on steps, s; none where no GPU takes them.
     fn gpu_seconds(&self) -> Option<f64>;

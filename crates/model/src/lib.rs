@@ -20,7 +20,7 @@ pub use container::Container;
 pub use frame::{Column, Frame, ParticleSet, Values};
 pub use gauge::GaugeColumn;
 #[cfg(feature = "gpu")]
-pub use gpu_model::{Glance, GpuModel};
+pub use gpu_model::{Advance, Glance, GpuModel};
 pub use ledger::{Account, Balance, ExactSum, Ledger};
 pub use map::Map;
 pub use name::Name;

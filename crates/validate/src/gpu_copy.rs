@@ -1,7 +1,7 @@
 //! Copy bandwidth of a GPU's memory: the reference for the passes of a step.
 
 use crate::{Bench, BenchOptions, Rate};
-use corpuscle_gpu::{Gpu, GpuError, Kernel, THREADS, Task, read, storage, submit, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, Kernel, THREADS, Task, read, storage, submit, wait_for, wgpu};
 use std::time::Instant;
 
 pub(crate) const BENCHES: &[Bench] = &[Bench {
@@ -69,7 +69,7 @@ fn measure(gpu: &Gpu, seconds: f64) -> Result<Rate, GpuError> {
     let copy = || {
         copying.order(gpu, COPIES);
         // Waits for what is done.
-        read::<u32>(gpu, &to, 1)
+        wait_for(read::<u32>(gpu, &to, 1))
     };
     copy()?;
     let (began, mut times) = (Instant::now(), 0);
@@ -106,6 +106,6 @@ mod tests {
         let bytes: Vec<u8> = numbers.iter().flatten().flat_map(|number| number.to_le_bytes()).collect();
         gpu.queue.write_buffer(&from, 0, &bytes);
         Copying::of(&gpu, &from, &to).order(&gpu, 1);
-        assert!(read::<[u32; 4]>(&gpu, &to, count).unwrap() == numbers);
+        assert!(wait_for(read::<[u32; 4]>(&gpu, &to, count)).unwrap() == numbers);
     }
 }

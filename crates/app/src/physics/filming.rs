@@ -62,13 +62,15 @@ mod tests {
     use corpuscle::gpu::require_gpu;
     use corpuscle::pictures::CameraOffset;
     use corpuscle::scene::{Scene, builtin};
+    use corpuscle::{Cpu, Simulation};
 
     #[test]
     fn each_picture_is_seen_as_the_window_is_seen_then() {
         let Some(gpu) = require_gpu("a film that follows the view") else { return };
         let name = "gas/free-expansion";
         let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
-        let subject = Subject::live(scene, Path::new(""), Backend::Cpu, Some(&gpu)).unwrap();
+        let simulation = Simulation::open(scene, Path::new("")).unwrap();
+        let subject = Subject::live(simulation, Backend::Cpu, (Some(&gpu), Cpu::AllCores)).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("film");
         let mut filming = Filming::begin(&gpu, &subject, &film, 1.0).unwrap();

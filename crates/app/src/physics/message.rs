@@ -1,6 +1,6 @@
 //! Messages between the window and a worker that runs the physics: no memory is shared.
 
-use super::{Command, Event, Opened, scene_text};
+use super::{Backend, Command, Event, Opened, scene_text};
 use crate::snapshot::Snapshot;
 use corpuscle::model::Surface;
 use corpuscle::pictures::Scenery;
@@ -12,6 +12,8 @@ use std::sync::Arc;
 /// A message to the worker.
 #[derive(Serialize, Deserialize)]
 pub(super) enum ToWorker {
+    /// Compute scenes that are opened from now on on this backend.
+    Backend(Backend),
     /// A command.
     Command(Command),
     /// A raster file to be held in memory under a path.
@@ -94,9 +96,9 @@ pub(super) fn message<T: for<'de> Deserialize<'de>>(bytes: &[u8]) -> Result<T, S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::Backend;
     use crate::physics::runner::Runner;
     use crate::physics::{Change, Shared};
+    use corpuscle::gpu::wait_for;
     use corpuscle::scene::builtin;
     use std::sync::mpsc::channel;
 
@@ -113,7 +115,7 @@ mod tests {
         let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
         for command in [Command::Open(Box::new(scene), "".into())].into_iter().chain(commands) {
             let ToWorker::Command(command) = sent(&ToWorker::Command(command)) else { panic!() };
-            runner.take(command);
+            wait_for(runner.take(command));
         }
         let events = answers.try_iter().filter_map(FromWorker::of).map(|event| sent(&event)).collect();
         (events, shared.newest().unwrap())

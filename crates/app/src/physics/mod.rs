@@ -52,14 +52,14 @@ pub(crate) fn round(value: f64) -> f64 {
 }
 
 /// The backend of the steps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Backend {
-    /// On the device that draws the window, where that is a GPU and the scene is large enough.
+    /// On the device that draws the window (in a browser on the worker's), where that is a GPU and the scene is large enough.
     #[default]
     Auto,
     /// On the CPU.
     Cpu,
-    /// On the device that draws the window, whatever it is; a gas on the CPU all the same.
+    /// On that device, whatever it is; a gas on the CPU all the same.
     Gpu,
 }
 

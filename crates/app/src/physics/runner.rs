@@ -9,7 +9,8 @@ use crate::snapshot::{Measures, Snapshot};
 use corpuscle::gpu::Gpu;
 use corpuscle::model::Frame;
 use corpuscle::pictures::{PictureSettings, Pictures, Scenery};
-use corpuscle::{Error, Sample};
+use corpuscle::scene::Scene;
+use corpuscle::{Cpu, Error, Sample, Simulation};
 use corpuscle_render::RenderError;
 use std::path::Path;
 use std::sync::Arc;
@@ -29,9 +30,13 @@ const SMALL: [u32; 2] = [16, 16];
 pub(super) struct Runner {
     events: Sender<Event>,
     shared: Arc<Shared>,
-    backend: Backend,
+    /// Of scenes that are opened from now on.
+    pub(super) backend: Backend,
     /// The devices that draw and compute; none where it is drawn elsewhere.
     devices: Option<Devices>,
+    /// The device that may take steps; beside a CPU of one core it is opened for the first scene that may take it.
+    stepping: Option<Gpu>,
+    pub(super) cpu: Cpu,
     /// Scenes opened so far.
     number: u64,
     running: Option<Running>,
@@ -82,7 +87,8 @@ impl Rate {
 impl Runner {
     /// Without a scene.
     pub fn new(events: Sender<Event>, shared: Arc<Shared>, backend: Backend, devices: Option<Devices>) -> Self {
-        Self { events, shared, backend, devices, number: 0, running: None }
+        let stepping = devices.as_ref().map(|devices| devices.gpu.clone());
+        Self { events, shared, backend, devices, stepping, cpu: Cpu::AllCores, number: 0, running: None }
     }
 
     /// How long to wait for a command before the next slice; none while paused.
@@ -104,14 +110,13 @@ impl Runner {
         self.send(Event::Fault("an internal error stopped the scene; open it again".into()));
     }
 
-    /// Does what a command says.
-    pub fn take(&mut self, command: Command) {
+    /// Does what a command says. To be awaited to its end.
+    pub async fn take(&mut self, command: Command) {
         let command = match command {
             Command::Open(scene, folder) => {
-                let (backend, gpu) = (self.backend, self.devices.as_ref().map(|devices| devices.gpu.clone()));
-                return self.open(|| Subject::live(*scene, &folder, backend, gpu.as_ref()));
+                return self.open(async |runner| runner.live(*scene, &folder).await).await;
             }
-            Command::OpenRun(folder) => return self.open(|| Subject::recorded(&folder)),
+            Command::OpenRun(folder) => return self.open(async |_| Subject::recorded(&folder)).await,
             command => command,
         };
         let Some(running) = &mut self.running else { return };
@@ -131,7 +136,7 @@ impl Runner {
             Command::Film(path) => self.film(&path),
             Command::EndFilm => self.end_film(),
             Command::Pace(pace) => running.pace.requested = pace,
-            Command::Step(by) => self.step(by),
+            Command::Step(by) => self.step(by).await,
             Command::Change(change) => match running.subject.change(change) {
                 Ok(()) => running.measure_at = Instant::now(),
                 Err(error) => self.send(Event::NotChanged(error.to_string())),
@@ -140,11 +145,33 @@ impl Runner {
         self.publish();
     }
 
-    fn open(&mut self, subject: impl FnOnce() -> Result<Subject, Error>) {
+    /// Opens a scene at its start, on the device where it is to take the steps.
+    async fn live(&mut self, scene: Scene, folder: &Path) -> Result<Subject, Error> {
+        let simulation = Simulation::open(scene, folder)?;
+        let may_take_gpu = match self.backend {
+            Backend::Cpu => false,
+            Backend::Auto => simulation.why_on_cpu(self.cpu).is_none(),
+            Backend::Gpu => simulation.model().on_gpu().is_some(),
+        };
+        if may_take_gpu && self.cpu == Cpu::OneCore {
+            self.open_device().await;
+        }
+        Subject::live(simulation, self.backend, (self.stepping.as_ref(), self.cpu))
+    }
+
+    /// Opens the device that may take steps, if there is one and none is open; one that was lost is opened again.
+    async fn open_device(&mut self) {
+        self.stepping = self.stepping.take().filter(|gpu| gpu.check().is_ok());
+        if self.stepping.is_none() {
+            self.stepping = Gpu::open_async().await.ok();
+        }
+    }
+
+    async fn open(&mut self, subject: impl AsyncFnOnce(&mut Self) -> Result<Subject, Error>) {
         self.end_film();
         self.running = None;
         self.number += 1;
-        match subject().and_then(|subject| self.put(subject)) {
+        match subject(self).await.and_then(|subject| self.put(subject)) {
             Ok(opened) => {
                 self.publish();
                 self.send(Event::Opened(Box::new(opened)));
@@ -193,18 +220,18 @@ impl Runner {
         }
     }
 
-    fn step(&mut self, by: f64) {
+    async fn step(&mut self, by: f64) {
         let Some(running) = &mut self.running else { return };
         running.wait();
         let to = running.subject.time() + by;
-        if let Err(error) = running.subject.advance_to(to, &self.shared.stop) {
+        if let Err(error) = running.subject.advance_to(to, &self.shared.stop).await {
             self.send(Event::Fault(error.to_string()));
         }
         self.add_film_picture();
     }
 
-    /// Advances for a slice of wall-clock time.
-    pub fn slice(&mut self) {
+    /// Advances for a slice of wall-clock time. To be awaited to its end.
+    pub async fn slice(&mut self) {
         let Some(running) = &mut self.running else { return };
         let begun = Instant::now();
         let devices = self.devices.as_ref();
@@ -218,7 +245,7 @@ impl Runner {
         let to = running.filming.as_ref().map_or(to, |filming| to.min(filming.next.max(from)));
         let whole = running.began.elapsed();
         running.began = begun;
-        let gone = running.subject.advance_to(to, &self.shared.stop);
+        let gone = running.subject.advance_to(to, &self.shared.stop).await;
         let now = running.subject.time();
         running.pace.went(now - from, begun.elapsed(), whole.max(begun.elapsed()));
         self.add_film_picture();

@@ -6,7 +6,7 @@ use corpuscle::gpu::{DeviceParticles, Gpu, GpuKind};
 use corpuscle::model::{Container, Frame, GaugeColumn, Path as Trajectory};
 use corpuscle::output::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
 use corpuscle::scene::Scene;
-use corpuscle::{Choice, Error, Sample, Simulation};
+use corpuscle::{Choice, Cpu, Error, Sample, Simulation};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -31,21 +31,23 @@ pub(super) struct Recorded {
 }
 
 impl Subject {
-    /// Opens a scene at its start, on a backend, with the device of the window, if there is one.
-    pub fn live(scene: Scene, folder: &Path, backend: Backend, gpu: Option<&Gpu>) -> Result<Self, Error> {
-        let mut simulation = Simulation::open(scene, folder)?;
+    /// A scene at its start, on a backend: on `gpu` or on a CPU.
+    pub fn live(mut simulation: Simulation, backend: Backend, (gpu, cpu): (Option<&Gpu>, Cpu)) -> Result<Self, Error> {
         let choice = |is_gpu, why: &str| Choice { is_gpu, why: why.into() };
         let choice = match (backend, gpu) {
-            (Backend::Auto | Backend::Gpu, None) => choice(false, "in a browser's worker"),
-            (Backend::Auto, Some(gpu)) => simulation.use_best_on(gpu),
-            (Backend::Gpu, Some(_)) if simulation.model().on_gpu().is_none() => {
+            (Backend::Cpu, _) => choice(false, "as requested"),
+            (Backend::Auto, Some(gpu)) => simulation.use_best_on(gpu, cpu),
+            (Backend::Auto, None) => {
+                choice(false, simulation.why_on_cpu(cpu).as_deref().unwrap_or("there is no GPU to choose"))
+            }
+            (Backend::Gpu, _) if simulation.model().on_gpu().is_none() => {
                 choice(false, "this model runs on the CPU only")
             }
             (Backend::Gpu, Some(gpu)) => {
                 simulation.use_this_gpu(gpu.clone())?;
                 choice(true, &gpu.name)
             }
-            (Backend::Cpu, _) => choice(false, "as requested"),
+            (Backend::Gpu, None) => choice(false, "there is no GPU"),
         };
         Ok(Self::Live(Box::new(simulation), choice))
     }
@@ -94,7 +96,12 @@ impl Subject {
     pub fn computed_on(&self) -> Option<String> {
         match self {
             Self::Live(_, Choice { is_gpu, why }) => {
-                Some(format!("Computed on the {}: {why}", if *is_gpu { "GPU" } else { "CPU" }))
+                let on = if *is_gpu { "GPU" } else { "CPU" };
+                Some(if why.is_empty() {
+                    format!("Computed on the {on}")
+                } else {
+                    format!("Computed on the {on}: {why}")
+                })
             }
             Self::Recorded(_) => None,
         }
@@ -124,10 +131,10 @@ impl Subject {
         }
     }
 
-    /// Advances to a time, or until it is stopped.
-    pub fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), Error> {
+    /// Advances to a time, or until it is stopped. To be awaited to its end.
+    pub async fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), Error> {
         match self {
-            Self::Live(simulation, _) => Ok(simulation.model_mut().advance_to(time, stop)?),
+            Self::Live(simulation, _) => simulation.advance_later(time, stop).await,
             Self::Recorded(run) => run.show(time),
         }
     }

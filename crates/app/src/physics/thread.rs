@@ -5,7 +5,7 @@ use super::{Backend, Command, Devices, Event, Shared};
 use crate::background_device::BackgroundDevice;
 use crate::snapshot::{Snapshot, Wake};
 use crate::view_state::ViewState;
-use corpuscle::gpu::Gpu;
+use corpuscle::gpu::{Gpu, wait_for};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -93,11 +93,11 @@ fn run(mut runner: Runner, commands: &Receiver<Command>, shared: &Shared) {
         // A panic must not end the window.
         let done = catch_unwind(AssertUnwindSafe(|| match next {
             Ok(command) => {
-                runner.take(command);
+                wait_for(runner.take(command));
                 true
             }
             Err(RecvTimeoutError::Timeout) => {
-                runner.slice();
+                wait_for(runner.slice());
                 true
             }
             Err(RecvTimeoutError::Disconnected) => false,

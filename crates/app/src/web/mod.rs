@@ -26,6 +26,8 @@ struct Words {
     measure: Option<f64>,
     /// `speed=TIMES`: the pace of scenes, over their own.
     speed: Option<f64>,
+    /// `backend=cpu`, `backend=gpu`: what takes the steps.
+    backend: Backend,
 }
 
 impl Words {
@@ -33,7 +35,12 @@ impl Words {
         let words: Vec<_> = search.trim_start_matches('?').split('&').collect();
         let number = |name| words.iter().find_map(|word| word.strip_prefix(name)?.parse::<f64>().ok());
         let (measure, speed) = (number("measure="), number("speed="));
-        Self { is_embedded: words.contains(&"embed"), measure, speed }
+        let backend = match words.iter().find_map(|word| word.strip_prefix("backend=")) {
+            Some("cpu") => Backend::Cpu,
+            Some("gpu") => Backend::Gpu,
+            _ => Backend::Auto,
+        };
+        Self { is_embedded: words.contains(&"embed"), measure, speed, backend }
     }
 }
 
@@ -96,7 +103,7 @@ impl App {
             Ok(start) => (start, None),
             Err(fault) => (Start::Welcome, Some(fault)),
         };
-        let window = Window::new(&context.egui_ctx, screen, start, Backend::Auto);
+        let window = Window::new(&context.egui_ctx, screen, start, words.backend);
         let mut window = window.map_err(|error| error.to_string())?;
         if let Some(fault) = fault {
             window.show_error(fault);
@@ -132,6 +139,7 @@ impl App {
             "opening": self.window.is_waiting(),
             "error": self.window.fault(),
             "webgpu": self.gpu.is_some(),
+            "computed_on": self.window.computed_on(),
             "pictures_per_s": measured.map(|measured| measured.pictures_per_s),
             "slowest_picture_s": measured.map(|measured| measured.slowest_s),
         })

@@ -213,6 +213,11 @@ impl Window {
         self.pending.is_some()
     }
 
+    /// What takes the steps and why, as text; none without a scene that is computed.
+    pub fn computed_on(&self) -> Option<&str> {
+        self.open.as_ref()?.computed_on.as_deref()
+    }
+
     /// The last error, if any.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()

@@ -30,7 +30,7 @@ const MOST_NODES: usize = 4097;
 /// Height of the block below its lowest elevation, fraction of its width.
 const BASE: f64 = 0.06;
 /// Height of obstacles without a crest, m.
-const HIGH_ENOUGH: f64 = 7.0;
+pub(super) const HIGH_ENOUGH: f64 = 7.0;
 /// Depth that water is made for which is as clear as clear deep water, m, and how turbid other water is at least and at most: a flood
 /// of centimetres is muddy, and would not be seen otherwise.
 const CLEAR: f64 = 1.5;
@@ -40,7 +40,7 @@ const BLUES: [u32; 4] = [0x00bfe3f7, 0x006fb5e8, 0x001d6fbd, 0x000a2d63];
 /// Drawn thickness of walls of no thickness, fraction of the longer side of the terrain.
 const LINE_WIDTH: f64 = 0.003;
 /// Colour of buildings.
-const WALLS: [u8; 3] = [206, 196, 184];
+pub(super) const WALLS: [u8; 3] = [206, 196, 184];
 
 /// Draws a flood.
 pub(crate) struct FloodPicture {
@@ -250,10 +250,14 @@ impl FloodPicture {
 }
 
 /// Heights of the ground at the nodes of its own grid, at most so many a side, so many times as high as they are.
-pub(super) fn height_field(ground: &Ground, heights: f64, most: usize) -> HeightField {
-    let bounds = ground.bounds();
+fn height_field(ground: &Ground, heights: f64, most: usize) -> HeightField {
     let grid = ground.map_grid();
-    let nodes = [grid.columns, grid.rows].map(|cells| (cells + 1).min(most));
+    sampled(ground, heights, [grid.columns, grid.rows].map(|cells| (cells + 1).min(most)))
+}
+
+/// The same at so many nodes `[eastwards, northwards]`.
+pub(super) fn sampled(ground: &Ground, heights: f64, nodes: [usize; 2]) -> HeightField {
+    let bounds = ground.bounds();
     let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
     HeightField::sampled(from, to, nodes, |x, y| {
         if has_data(ground, [x, y]) { heights * ground.height(x, y) } else { f64::NAN }

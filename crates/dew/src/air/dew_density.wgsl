@@ -18,7 +18,7 @@ fn of_air(i: u32, place: vec3f, moments: ptr<function, Moments>) -> f32 {
                 let across = columns_round(truth, y, z);
                 let row = row_of(y, z);
                 let end = start[row + across.y + 1u];
-                var of_row: Moments;
+                var of_row = Moments();
                 for (var j = start[row + across.x]; j < end; j++) {
                     let away = (shown(mirror, spots[j].xyz) - place) * parameters.per_h;
                     let q_squared = dot(away, away);
@@ -45,7 +45,7 @@ fn of_solids(place: vec3f, moments: ptr<function, Moments>) -> f32 {
             let across = columns_round(place, y, z);
             let row = row_of(y, z);
             let end = site_start[row + across.y + 1u];
-            var of_row: Moments;
+            var of_row = Moments();
             for (var k = site_start[row + across.x]; k < end; k++) {
                 let away = (sites[k].place - place) * parameters.per_h;
                 let q_squared = dot(away, away);
@@ -121,7 +121,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     var particle = unpacked(ordered[i]);
-    var moments: Moments;
+    var moments = Moments();
     let filling = of_air(i, particle.place, &moments) + of_solids(particle.place, &moments);
     particle.density = density_of(particle, parameters.of_filling * filling);
     let tensor = normalised(moments);

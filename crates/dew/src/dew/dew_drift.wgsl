@@ -60,7 +60,7 @@ fn main(
 ) {
     let i = id.x;
     let is_there = i < status.particles;
-    var particle: Particle;
+    var particle = Particle();
     if is_there {
         particle = unpacked(particles[i]);
         let step = status.step;

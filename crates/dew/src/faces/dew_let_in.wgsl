@@ -29,7 +29,7 @@ fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
     let columns = parameters.counts[a];
     let all = columns * parameters.counts[b];
     for (var k = thread; k < all; k += GROUP) {
-        var particle: Particle;
+        var particle = Particle();
         particle.place[axis] = select(parameters.high[axis] + behind, parameters.low[axis] - behind, number % 2u == 0u);
         particle.place[a] = parameters.low[a] + (f32(k % columns) + 0.5) * parameters.apart[a];
         particle.place[b] = parameters.low[b] + (f32(k / columns) + 0.5) * parameters.apart[b];

@@ -48,7 +48,7 @@ fn add_particle(number: u32, column: u32, depth: f32, at: u32, id: u32) {
     let a = (axis + 1u) % 3u;
     let b = (axis + 2u) % 3u;
     let along = columns_along(number);
-    var particle: Particle;
+    var particle = Particle();
     particle.place[axis] = select(parameters.high[axis] + depth, parameters.low[axis] - depth, number % 2u == 0u);
     particle.place[a] = parameters.low[a] + (f32(column % along.x) + 0.5) * parameters.apart[a];
     particle.place[b] = parameters.low[b] + (f32(column / along.x) + 0.5) * parameters.apart[b];

@@ -2,7 +2,7 @@
 #import dew_particles
 
 fn as_seen(particle: Particle) -> DeviceParticle {
-    var air: DeviceParticle;
+    var air = DeviceParticle();
     if particle.role != INSIDE {
         return air;
     }

@@ -8,11 +8,11 @@ use corpuscle_gpu::{GpuError, read, submit};
 
 impl GpuSolver {
     /// Values of gauges of the air as a whole. Those of solids are set in `state`.
-    pub fn measure(&self, state: &mut State) -> Result<Totals, GpuError> {
+    pub async fn measure(&self, state: &mut State) -> Result<Totals, GpuError> {
         submit(self.batches.gpu(), "gauges", None, |pass| self.tasks.measure.run(pass, MEASURING_GROUPS));
         let groups: Vec<shared::Measured> =
-            read(self.batches.gpu(), &self.tasks.memory.measured, MEASURING_GROUPS as usize)?;
-        self.download_solids(state)?;
+            read(self.batches.gpu(), &self.tasks.memory.measured, MEASURING_GROUPS as usize).await?;
+        self.download_solids(state).await?;
         Ok(totals(&groups, self.origin))
     }
 }

@@ -233,9 +233,9 @@ impl GpuSolver {
     }
 
     /// Brings the water on the particles of the solids, kg.
-    pub fn download_water(&self, water: &mut Vec<f64>) -> Result<(), GpuError> {
+    pub async fn download_water(&self, water: &mut Vec<f64>) -> Result<(), GpuError> {
         let waters: Vec<shared::Water> =
-            read(self.batches.gpu(), &self.tasks.memory.waters, self.water_uploaded.len())?;
+            read(self.batches.gpu(), &self.tasks.memory.waters, self.water_uploaded.len()).await?;
         water.clear();
         // What rounding leaves of the last of the water is nothing.
         let now = |(uploaded, water): (&f64, &shared::Water)| (uploaded + from_pair(water.gained)).max(0.0);
@@ -244,13 +244,13 @@ impl GpuSolver {
     }
 
     /// Brings the air and the solids back, where there is any news of them.
-    pub fn download(&mut self, state: &mut State) -> Result<(), GpuError> {
+    pub async fn download(&mut self, state: &mut State) -> Result<(), GpuError> {
         if !self.ahead {
             return Ok(());
         }
         let air: Vec<shared::Particle> =
-            read(self.batches.gpu(), &self.tasks.memory.particles, self.status.particles as usize)?;
-        self.download_solids(state)?;
+            read(self.batches.gpu(), &self.tasks.memory.particles, self.status.particles as usize).await?;
+        self.download_solids(state).await?;
         state.air.clear();
         state.air.extend(air.iter().map(|particle| self.origin.to_host(particle)));
         self.ahead = false;
@@ -258,10 +258,11 @@ impl GpuSolver {
     }
 
     /// Brings back what changes of the solids.
-    fn download_solids(&self, state: &mut State) -> Result<(), GpuError> {
-        let solids: Vec<shared::Solid> = read(self.batches.gpu(), &self.tasks.memory.solids, state.temperatures.len())?;
-        let bodies: Vec<shared::Body> = read(self.batches.gpu(), &self.tasks.memory.bodies, self.bodies.len())?;
-        self.download_water(&mut state.water_on)?;
+    async fn download_solids(&self, state: &mut State) -> Result<(), GpuError> {
+        let solids: Vec<shared::Solid> =
+            read(self.batches.gpu(), &self.tasks.memory.solids, state.temperatures.len()).await?;
+        let bodies: Vec<shared::Body> = read(self.batches.gpu(), &self.tasks.memory.bodies, self.bodies.len()).await?;
+        self.download_water(&mut state.water_on).await?;
         let temperature = |solid: &shared::Solid| from_pair(solid.temperature) + self.origin.temperature;
         state.temperatures.clear();
         state.temperatures.extend(solids.iter().map(temperature));
@@ -271,7 +272,7 @@ impl GpuSolver {
     }
 
     /// Takes steps up to a time, s, or as many as a batch has, `most` at most.
-    pub fn advance(&mut self, until: f64, most: u64) -> Result<BatchResult, GpuError> {
+    pub async fn advance(&mut self, until: f64, most: u64) -> Result<BatchResult, GpuError> {
         #[cfg(test)]
         self.lose();
         let left = until - self.time();
@@ -293,17 +294,17 @@ impl GpuSolver {
             ..Status::zeroed()
         };
         let Self { tasks, batches, status, bodies, sources, .. } = self;
-        let (done, bodies, supplied) = batches.run(
-            count,
-            (&tasks.memory.status, &*status),
-            |pass| tasks.steps(pass, count),
-            |gpu| {
-                let done = read(gpu, &tasks.memory.status, 1)?[0];
-                let bodies: Vec<shared::Body> = read(gpu, &tasks.memory.bodies, bodies.len())?;
-                let download = |sources: &mut GpuSources| sources.download_supplied(gpu, &tasks.memory);
-                Ok((done, bodies, sources.as_mut().map(download).transpose()?.unwrap_or_default()))
-            },
-        )?;
+        let download = async |gpu: &Gpu| {
+            let done = read(gpu, &tasks.memory.status, 1).await?[0];
+            let bodies: Vec<shared::Body> = read(gpu, &tasks.memory.bodies, bodies.len()).await?;
+            let supplied = match sources {
+                Some(sources) => sources.download_supplied(gpu, &tasks.memory).await?,
+                None => Vec::new(),
+            };
+            Ok((done, bodies, supplied))
+        };
+        let status = (&tasks.memory.status, &*status);
+        let (done, bodies, supplied) = batches.run(count, status, |pass| tasks.steps(pass, count), download).await?;
         self.status = done;
         self.ahead |= self.status.steps > 0;
         Ok(self.progress(&bodies, supplied))

@@ -54,7 +54,7 @@ impl Model for SphSweFlood {
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         if self.on_gpu.is_some() {
-            return self.advance_on_gpu(time, stop, &mut Observers::default());
+            return corpuscle_gpu::wait_for(self.advance_on_gpu(time, stop, &mut Observers::default()));
         }
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
@@ -75,7 +75,7 @@ impl Model for SphSweFlood {
         observer: &mut dyn AdvanceObserver,
     ) -> Result<(), ModelError> {
         if self.on_gpu.is_some() {
-            self.advance_measured(time, stop, Observers::of(observer))
+            corpuscle_gpu::wait_for(self.advance_measured(time, stop, Observers::of(observer)))
         } else {
             advance_with(self, time, stop, observer)
         }

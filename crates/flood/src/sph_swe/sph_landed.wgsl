@@ -5,7 +5,7 @@
 var<workgroup> before: vec2u;
 
 fn particle_of(drop: Drop) -> Particle {
-    var particle: Particle;
+    var particle = Particle();
     particle.place = drop.place;
     particle.velocity = drop.velocity;
     particle.volume = drop.volume;

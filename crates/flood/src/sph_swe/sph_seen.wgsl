@@ -22,7 +22,7 @@ fn is_held(place: vec2f) -> bool {
 }
 
 fn on_ground(particle: Particle) -> DeviceParticle {
-    var as_seen: DeviceParticle;
+    var as_seen = DeviceParticle();
     if particle.outside != 0u {
         return as_seen;
     }
@@ -39,7 +39,7 @@ fn on_ground(particle: Particle) -> DeviceParticle {
 }
 
 fn in_air(drop: Drop) -> DeviceParticle {
-    var as_seen: DeviceParticle;
+    var as_seen = DeviceParticle();
     if drop.state != FALLS {
         return as_seen;
     }

@@ -142,7 +142,7 @@ fn lowest(thread: u32, spawned: vec2u) -> vec2f {
 
 // Adds a new particle; the caller has checked that there is room for it.
 fn spawn(number: u32, place: vec2f, velocity: vec2f) {
-    var particle: Particle;
+    var particle = Particle();
     particle.place = place;
     particle.velocity = velocity;
     particle.volume = parameters.new_volume;

@@ -64,7 +64,7 @@ impl Model for VoronoiFlood {
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         if self.on_gpu.is_some() {
-            return self.advance_on_gpu(time, stop);
+            return corpuscle_gpu::wait_for(self.advance_on_gpu(time, stop));
         }
         // On a thread of the pool: from outside, each pass of a small flood would wait for one to wake up.
         rayon::scope(|_| {

@@ -5,7 +5,7 @@
 @compute @workgroup_size(GROUP)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
     let first = group.x * SORT_BLOCK + thread * 4u;
-    var own: array<u32, 4>;
+    var own = array<u32, 4>();
     var sum = 0u;
     for (var k = 0u; k < 4u; k++) {
         if first + k < sizes.cells {

@@ -50,7 +50,7 @@ fn quad_round(droplet: DropletInstance, radius: f32, flatness: f32) -> Quad {
 
 // A place on the quad, `offset` from its middle.
 fn sprite_at(droplet: DropletInstance, quad: Quad, offset: vec3f) -> Sprite {
-    var out: Sprite;
+    var out = Sprite();
     out.clip = view.clip_from_world * vec4f(quad.middle + offset, 1.0);
     out.offset = offset;
     out.middle = quad.middle;

@@ -48,9 +48,10 @@ impl Physics {
     ///
     /// # Errors
     /// Where the browser starts none.
-    pub(crate) fn start(_: Option<&Gpu>, _: BackgroundDevice, _: Backend, wake: Wake) -> std::io::Result<Self> {
+    pub(crate) fn start(_: Option<&Gpu>, _: BackgroundDevice, backend: Backend, wake: Wake) -> std::io::Result<Self> {
         let received = Rc::<RefCell<Received>>::default();
         let link = start(&received, &wake).map_err(|error| std::io::Error::other(format!("{error:?}")))?;
+        link.borrow_mut().send(&ToWorker::Backend(backend));
         Ok(Self { link, received })
     }
 

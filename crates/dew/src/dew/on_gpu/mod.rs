@@ -8,8 +8,8 @@ use crate::faces::deepest_outside;
 use crate::gpu::{BatchResult, Crossed, GpuSolver, MOST_FANS};
 use crate::room::Face;
 use crate::wetting::WettingState;
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming};
-use corpuscle_model::{AdvanceObserver, Glance, GpuModel, Model, ModelError};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming, wait_for};
+use corpuscle_model::{Advance, AdvanceObserver, Glance, GpuModel, Model, ModelError};
 use on_device::FrameRequest;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -30,6 +30,15 @@ impl GpuModel for Dew {
             )));
         }
         self.open_gpu(gpu).map_err(|error| ModelError::Setup(error.to_string()))
+    }
+
+    fn advance_later<'a>(&'a mut self, time: f64, stop: &'a AtomicBool) -> Advance<'a> {
+        Box::pin(async move {
+            if self.gpu_solver.is_none() {
+                return self.advance_to(time, stop);
+            }
+            self.advance_on_gpu(time, stop).await
+        })
     }
 
     fn gpu_seconds(&self) -> Option<f64> {
@@ -70,7 +79,8 @@ impl GpuModel for Dew {
         if self.gpu_solver.is_none() {
             return self.advance_with(time, stop, observer);
         }
-        self.advance_measured(time, stop, observer, Some(FrameRequest { wanted: first, sees_air, show }))
+        let frame_request = Some(FrameRequest { wanted: first, sees_air, show });
+        wait_for(self.advance_measured(time, stop, observer, frame_request))
     }
 }
 
@@ -128,21 +138,24 @@ impl Dew {
         self.room.faces.as_flattened().iter().enumerate().map(of_face).sum()
     }
 
-    pub(crate) fn advance_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+    pub(crate) async fn advance_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         if self.state.time + self.state.time_step > time {
             self.shown = time;
             return Ok(());
         }
-        self.advance_and_download(|dew| dew.go_on_gpu(time, stop))
+        self.advance_and_download(async |dew| dew.go_on_gpu(time, stop).await).await
     }
 
     /// Brings the state back after steps that may break down. Where the GPU fails, it is that of before.
-    fn advance_and_download(
+    async fn advance_and_download(
         &mut self,
-        advance: impl FnOnce(&mut Self) -> Result<Option<ModelError>, GpuError>,
+        advance: impl AsyncFnOnce(&mut Self) -> Result<Option<ModelError>, GpuError>,
     ) -> Result<(), ModelError> {
         let before = (self.shown, self.state.clone(), self.wetting.as_ref().map(|wetting| wetting.state()));
-        let broken = advance(self).and_then(|broken| self.download_from_gpu().map(|()| broken));
+        let broken = match advance(self).await {
+            Ok(broken) => self.download_from_gpu().await.map(|()| broken),
+            Err(error) => Err(error),
+        };
         match broken {
             Ok(None) => Ok(()),
             Ok(Some(broken)) => Err(broken),
@@ -161,7 +174,7 @@ impl Dew {
     }
 
     /// Goes on to `time`, batch by batch; gives what broke down.
-    fn go_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<Option<ModelError>, GpuError> {
+    async fn go_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<Option<ModelError>, GpuError> {
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
                 self.shown = self.shown.max(self.state.time);
@@ -169,15 +182,15 @@ impl Dew {
             }
             let most = self.steps_to_drops();
             let Some(solver) = &mut self.gpu_solver else { break };
-            let progress = solver.advance(time, most)?;
+            let progress = solver.advance(time, most).await?;
             self.book_batch(&progress);
-            self.update_drops_beside_gpu()?;
+            self.update_drops_beside_gpu().await?;
             if progress.broken {
                 let last = if progress.steps > 0 { progress.last_step } else { progress.step };
                 return Ok(self.check_step(progress.fastest, last, progress.step).err());
             }
             if progress.full {
-                self.make_room()?;
+                self.make_room().await?;
                 continue;
             }
             // To the GPU, which rounds more coarsely, a step that ends at that time may end after it.
@@ -198,8 +211,8 @@ impl Dew {
     }
 
     /// Takes more room on the GPU where the air that is to come might not find any.
-    fn make_room(&mut self) -> Result<(), GpuError> {
-        self.download_from_gpu()?;
+    async fn make_room(&mut self) -> Result<(), GpuError> {
+        self.download_from_gpu().await?;
         match self.gpu_solver.as_ref().map(|solver| solver.batches.gpu().clone()) {
             Some(gpu) => self.open_gpu(gpu),
             None => Ok(()),
@@ -207,7 +220,7 @@ impl Dew {
     }
 
     /// Transfers condensed water to the drops, where their update is due, and uploads the water.
-    fn update_drops_beside_gpu(&mut self) -> Result<(), GpuError> {
+    async fn update_drops_beside_gpu(&mut self) -> Result<(), GpuError> {
         let Some(solver) = &mut self.gpu_solver else { return Ok(()) };
         let [air, _] = solver.filling();
         let is_due = |wetting: &crate::wetting::Wetting| {
@@ -217,7 +230,7 @@ impl Dew {
         if !self.wetting.as_ref().is_some_and(is_due) {
             return Ok(());
         }
-        solver.download_water(&mut self.state.water_on)?;
+        solver.download_water(&mut self.state.water_on).await?;
         self.update_drops(air);
         if let Some(solver) = &mut self.gpu_solver {
             solver.upload_water(&self.state.water_on, &self.evaporation);
@@ -226,9 +239,9 @@ impl Dew {
     }
 
     /// Brings the state back.
-    fn download_from_gpu(&mut self) -> Result<(), GpuError> {
+    async fn download_from_gpu(&mut self) -> Result<(), GpuError> {
         let Some(solver) = &mut self.gpu_solver else { return Ok(()) };
-        solver.download(&mut self.state)?;
+        solver.download(&mut self.state).await?;
         if self.layers.iter().any(Option::is_some) {
             // Gauges of layers need pairs of air and wall.
             self.arrangement.arrange(&mut self.state.air, &self.room, self.scale.h());

@@ -49,8 +49,8 @@ impl GpuSources {
     }
 
     /// Downloads the heat that each solid and wall got since the last time, J.
-    pub fn download_supplied(&mut self, gpu: &Gpu, memory: &Memory) -> Result<Vec<[f64; 3]>, GpuError> {
-        let now: Vec<shared::Source> = read(gpu, &memory.sources, self.initial.len())?;
+    pub async fn download_supplied(&mut self, gpu: &Gpu, memory: &Memory) -> Result<Vec<[f64; 3]>, GpuError> {
+        let now: Vec<shared::Source> = read(gpu, &memory.sources, self.initial.len()).await?;
         let now: Vec<[f64; 3]> = now.iter().map(|source| source.supplied.map(from_pair)).collect();
         let since = |(now, before): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|kind| now[kind] - before[kind]);
         let supplied = now.iter().zip(&self.before).map(since).collect();

@@ -5,7 +5,7 @@ use super::batch::{BatchRequest, BatchResult};
 use super::shared::{Grid, SpawnRequest, Status};
 use crate::sph_swe::measured::Reading;
 use crate::sph_swe::step::CELL_OVER_H;
-use corpuscle_gpu::{BATCH_START, GpuError, Halt, MOST_STEPS, from_halves, from_pair, read, to_pair};
+use corpuscle_gpu::{BATCH_START, Gpu, GpuError, Halt, MOST_STEPS, from_halves, from_pair, read, to_pair};
 
 /// Steps after which the cells are laid out anew; in between the host reads only the status.
 const LAID_OUT: u64 = MOST_STEPS as u64;
@@ -20,10 +20,10 @@ impl OnGpu {
 
     /// Takes some steps, through all of a request at most. Nothing is downloaded between two steps. Returns the result, and the rows of gauges that fell
     /// due.
-    pub fn advance(&mut self, request: BatchRequest<'_>) -> Result<(BatchResult, Vec<Reading>), GpuError> {
+    pub async fn advance(&mut self, request: BatchRequest<'_>) -> Result<(BatchResult, Vec<Reading>), GpuError> {
         let BatchRequest { until, most, host_sample, map_times, last_sample, spawn_requests, due } = request;
         if self.steps.is_multiple_of(LAID_OUT) {
-            self.lay_out()?;
+            self.lay_out().await?;
             self.clock_began = self.time();
             self.status.clock = [0.0; 2];
         }
@@ -57,12 +57,9 @@ impl OnGpu {
         self.upload_gauge_times(due);
         self.upload_map_times(map_times, last_sample);
         let tasks = &self.tasks;
-        let (status, words) = self.batches.run(
-            count,
-            (&tasks.memory.status, &self.status),
-            |pass| tasks.steps(pass, count),
-            |gpu| tasks.download(gpu, due.len()),
-        )?;
+        let status = (&tasks.memory.status, &self.status);
+        let download = async |gpu: &Gpu| tasks.download(gpu, due.len()).await;
+        let (status, words) = self.batches.run(count, status, |pass| tasks.steps(pass, count), download).await?;
         self.status = status;
         let readings = self.readings(&words);
         self.steps += u64::from(self.status.steps);
@@ -102,7 +99,7 @@ impl OnGpu {
     }
 
     /// Lays the cells over the water as it stands, as [`corpuscle_sph::Cells`] does.
-    fn lay_out(&mut self) -> Result<(), GpuError> {
+    async fn lay_out(&mut self) -> Result<(), GpuError> {
         let Status { low, high, mean_h, particles, .. } = self.status;
         let any = particles > 0;
         let [mut low, mut high] =
@@ -146,7 +143,7 @@ impl OnGpu {
         self.status.cells = columns * rows + 1;
         self.gpu().queue.write_buffer(&self.tasks.memory.parameters, 0, bytemuck::bytes_of(&self.parameters));
         self.tasks.arrange(self.gpu(), &Status { step: 0.0, ..self.status });
-        let arranged: Status = read(self.gpu(), &self.tasks.memory.status, 1)?[0];
+        let arranged: Status = read(self.gpu(), &self.tasks.memory.status, 1).await?[0];
         self.status.particles = arranged.particles;
         Ok(())
     }

@@ -62,12 +62,12 @@ impl Gauges {
 
 impl Tasks {
     /// The status after a batch, and the words of `count` rows of gauges.
-    pub(super) fn download(&self, gpu: &Gpu, count: usize) -> Result<(Status, Vec<u32>), GpuError> {
+    pub(super) async fn download(&self, gpu: &Gpu, count: usize) -> Result<(Status, Vec<u32>), GpuError> {
         let Memory { status, rows, .. } = &self.memory;
         let extent = self.gauges.as_ref().filter(|_| count > 0).map(|gauges| gauges.extent);
         let [first, end] = extent.map_or([0; 2], |extent| [extent.first(), extent.first() + count * extent.stride()]);
         let parts = [(status, size_of::<Status>()), (rows, 4 * end)];
-        let [status, words] = read_together(gpu, parts, bytemuck::pod_collect_to_vec::<u8, u32>)?;
+        let [status, words] = read_together(gpu, parts, bytemuck::pod_collect_to_vec::<u8, u32>).await?;
         Ok((bytemuck::pod_read_unaligned(bytemuck::cast_slice(&status)), words[first..].to_vec()))
     }
 }

@@ -53,8 +53,8 @@ impl GpuMaps {
         self.numbers.iter().zip(&self.places).map(cell).collect()
     }
 
-    fn download(&self, gpu: &Gpu, cells: &wgpu::Buffer, maps: &mut Maps) -> Result<(), GpuError> {
-        let cells: Vec<MapCell> = read(gpu, cells, self.numbers.len())?;
+    async fn download(&self, gpu: &Gpu, cells: &wgpu::Buffer, maps: &mut Maps) -> Result<(), GpuError> {
+        let cells: Vec<MapCell> = read(gpu, cells, self.numbers.len()).await?;
         for (number, cell) in self.numbers.iter().zip(cells) {
             let MapCell { max_depth, max_speed, hazard, arrival, duration, .. } = cell;
             let arrival = if arrival < 0.0 { f32::NAN } else { arrival };
@@ -110,9 +110,12 @@ impl OnGpu {
     }
 
     /// Downloads the maps.
-    pub fn download_maps(&self, maps: &mut Maps) -> Result<(), GpuError> {
+    pub async fn download_maps(&self, maps: &mut Maps) -> Result<(), GpuError> {
         let cells = &self.tasks.memory.map_cells;
-        self.tasks.maps.as_ref().map_or(Ok(()), |kept| kept.download(self.gpu(), cells, maps))
+        match &self.tasks.maps {
+            Some(kept) => kept.download(self.gpu(), cells, maps).await,
+            None => Ok(()),
+        }
     }
 
     /// Uploads the times of the next samples, s, and that of the last.

@@ -63,13 +63,13 @@ impl<'a> Observers<'a> {
 
 impl SphSweFlood {
     /// [`Model::advance_with`](corpuscle_model::Model::advance_with) on the GPU. For a row of gauges nothing but the row comes back.
-    pub(in crate::sph_swe) fn advance_measured(
+    pub(in crate::sph_swe) async fn advance_measured(
         &mut self,
         time: f64,
         stop: &AtomicBool,
         mut observers: Observers<'_>,
     ) -> Result<(), ModelError> {
-        self.advance_on_gpu(time, stop, &mut observers)?;
+        self.advance_on_gpu(time, stop, &mut observers).await?;
         if self.shown < time {
             return Ok(());
         }

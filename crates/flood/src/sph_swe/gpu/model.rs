@@ -13,8 +13,8 @@ use crate::sph_swe::particle::Particle;
 use crate::sph_swe::step::CELL_OVER_H;
 use crate::sph_swe::{DENSITY, SphSweFlood, State};
 use crate::zone::Source;
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming};
-use corpuscle_model::{AdvanceObserver, ExactSum, Glance, GpuModel, Model, ModelError, ModelProgress};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming, wait_for};
+use corpuscle_model::{Advance, AdvanceObserver, ExactSum, Glance, GpuModel, Model, ModelError, ModelProgress};
 use corpuscle_scene::{SmoothingForm, Table};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -32,6 +32,15 @@ impl GpuModel for SphSweFlood {
             return Err(ModelError::Setup(what.into()));
         }
         self.open_gpu(gpu).map_err(|error| ModelError::Setup(error.to_string()))
+    }
+
+    fn advance_later<'a>(&'a mut self, time: f64, stop: &'a AtomicBool) -> Advance<'a> {
+        Box::pin(async move {
+            if self.on_gpu.is_none() {
+                return self.advance_to(time, stop);
+            }
+            self.advance_on_gpu(time, stop, &mut Observers::default()).await
+        })
     }
 
     fn gpu_seconds(&self) -> Option<f64> {
@@ -74,7 +83,7 @@ impl GpuModel for SphSweFlood {
             return self.advance_with(time, stop, observer);
         }
         let frame_request = Some(FrameRequest { wanted: first, show });
-        self.advance_measured(time, stop, Observers { frame_request, ..Observers::of(observer) })
+        wait_for(self.advance_measured(time, stop, Observers { frame_request, ..Observers::of(observer) }))
     }
 }
 
@@ -163,7 +172,7 @@ impl SphSweFlood {
         Ok(())
     }
 
-    pub(in crate::sph_swe) fn advance_on_gpu(
+    pub(in crate::sph_swe) async fn advance_on_gpu(
         &mut self,
         time: f64,
         stop: &AtomicBool,
@@ -183,7 +192,7 @@ impl SphSweFlood {
             if observers.measure() {
                 self.measure_on_gpu()?;
             }
-            let done = self.advance_to_sample(time, host_sample, stop, observers)?;
+            let done = self.advance_to_sample(time, host_sample, stop, observers).await?;
             if done.broken {
                 return Err(self.breakdown());
             }
@@ -202,7 +211,7 @@ impl SphSweFlood {
     }
 
     /// Advances to `time`, or to the first step that ends at `host_sample` or after. The host's state changes only when the download is complete.
-    fn advance_to_sample(
+    async fn advance_to_sample(
         &mut self,
         time: f64,
         host_sample: f64,
@@ -239,7 +248,7 @@ impl SphSweFlood {
                 spawn_requests: &spawn_requests,
                 due: &due,
             };
-            let (mut progress, mut readings) = on_gpu.advance(request).map_err(|error| failed(&error))?;
+            let (mut progress, mut readings) = on_gpu.advance(request).await.map_err(|error| failed(&error))?;
             let particles = on_gpu.particles();
             if !readings.iter().all(Reading::is_sound) {
                 progress.broken = true;
@@ -271,29 +280,29 @@ impl SphSweFlood {
             }
         }
         if done.steps > 0 {
-            let particles = self.downloaded().map_err(|error| failed(&error))?;
+            let particles = self.downloaded().await.map_err(|error| failed(&error))?;
             let steps = self.state.steps + done.steps;
             if let Some(error) = self.defect_among(&particles, done.time, steps) {
                 return Err(error);
             }
             self.state.particles = particles;
-            self.download_rest(&done, residual_volume, last_sample).map_err(|error| failed(&error))?;
+            self.download_rest(&done, residual_volume, last_sample).await.map_err(|error| failed(&error))?;
         }
         Ok(done)
     }
 
     /// The particles on the GPU.
-    fn downloaded(&mut self) -> Result<Vec<Particle>, GpuError> {
+    async fn downloaded(&mut self) -> Result<Vec<Particle>, GpuError> {
         let mut particles = Vec::new();
         if let Some(on_gpu) = &mut self.on_gpu {
-            on_gpu.download(&mut particles, &self.surroundings.terrain)?;
+            on_gpu.download(&mut particles, &self.surroundings.terrain).await?;
         }
         Ok(particles)
     }
 
     /// Downloads the rest of the GPU's state after the steps of `done`: `residual_volume` is that of each source, and the maps were last
     /// sampled at `last_sample` s.
-    fn download_rest(
+    async fn download_rest(
         &mut self,
         done: &BatchResult,
         residual_volume: Vec<ExactSum>,
@@ -301,13 +310,13 @@ impl SphSweFlood {
     ) -> Result<(), GpuError> {
         if let Some(on_gpu) = &self.on_gpu {
             let state = &mut self.state;
-            on_gpu.falling(&mut state.falling)?;
+            on_gpu.falling(&mut state.falling).await?;
             if done.map_samples > 0 {
-                on_gpu.download_maps(&mut state.maps)?;
+                on_gpu.download_maps(&mut state.maps).await?;
                 state.maps.set_last(last_sample);
                 state.next_sample += done.map_samples as u64;
             }
-            let pushed = on_gpu.on_obstacles()?;
+            let pushed = on_gpu.on_obstacles().await?;
             (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
             (self.state.residual_volume, self.state.next_id) = (residual_volume, done.next_id);
             self.book(done);

@@ -75,11 +75,11 @@ impl OnGpu {
     }
 
     /// Brings the particles back, where there is any news of them.
-    pub fn download(&mut self, particles: &mut Vec<Particle>, terrain: &Terrain) -> Result<(), GpuError> {
+    pub async fn download(&mut self, particles: &mut Vec<Particle>, terrain: &Terrain) -> Result<(), GpuError> {
         if !self.ahead {
             return Ok(());
         }
-        let sent: Vec<Packed> = read(self.gpu(), &self.tasks.memory.particles, self.status.particles as usize)?;
+        let sent: Vec<Packed> = read(self.gpu(), &self.tasks.memory.particles, self.status.particles as usize).await?;
         particles.clear();
         particles.extend(sent.iter().map(|particle| self.origin.unpacked(particle)));
         ground::complete(particles, terrain);
@@ -88,11 +88,11 @@ impl OnGpu {
     }
 
     /// Brings back what still falls.
-    pub fn falling(&self, falling: &mut Vec<Falling>) -> Result<(), GpuError> {
+    pub async fn falling(&self, falling: &mut Vec<Falling>) -> Result<(), GpuError> {
         if self.room_in_air == 0 {
             return Ok(());
         }
-        let drops: Vec<Drop> = read(self.gpu(), &self.tasks.memory.drops, self.room_in_air)?;
+        let drops: Vec<Drop> = read(self.gpu(), &self.tasks.memory.drops, self.room_in_air).await?;
         falling.clear();
         falling.extend(drops.iter().filter(|drop| drop.state == FALLS).map(|drop| self.origin.falling(drop)));
         Ok(())
@@ -105,10 +105,10 @@ impl OnGpu {
     }
 
     /// What was done to obstacles.
-    pub fn on_obstacles(&self) -> Result<ObstacleTotals, GpuError> {
+    pub async fn on_obstacles(&self) -> Result<ObstacleTotals, GpuError> {
         let (count, memory) = (self.obstacles.count, &self.tasks.memory);
-        let pushed: Vec<OnObstacle> = read(self.gpu(), &memory.obstacles, count)?;
-        let knocks: Vec<i32> = read(self.gpu(), &memory.knocks, 2 * count + 1)?;
+        let pushed: Vec<OnObstacle> = read(self.gpu(), &memory.obstacles, count).await?;
+        let knocks: Vec<i32> = read(self.gpu(), &memory.knocks, 2 * count + 1).await?;
         let impulses = pushed.iter().enumerate().map(|(number, pushed)| {
             let sums = [pushed.impulse_east, pushed.impulse_north].map(from_pair);
             [0, 1].map(|axis| self.impulse(number, axis, sums[axis], knocks[2 * number + axis]))

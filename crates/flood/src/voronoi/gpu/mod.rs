@@ -306,17 +306,14 @@ impl GpuSolver {
     ///
     /// # Errors
     /// [`GpuError::Lost`].
-    pub fn advance(&mut self, until: f64, most: u64) -> Result<(u64, Halt), GpuError> {
+    pub async fn advance(&mut self, until: f64, most: u64) -> Result<(u64, Halt), GpuError> {
         let left = until - from_pair(self.status.clock);
         let count = self.batches.steps(left, f64::from(self.status.step), most);
         self.status = Status { halted: BATCH_START, steps: 0, at_rim: 0, until: to_pair(until), ..self.status };
         let Self { tasks, memory, sides, batches, status, .. } = self;
-        *status = batches.run(
-            count,
-            (&memory.status, &*status),
-            |pass| Steps { tasks, memory, sides: *sides }.take(pass, count),
-            |gpu| Ok(read(gpu, &memory.status, 1)?[0]),
-        )?;
+        let work = |pass: &mut Pass<'_>| Steps { tasks, memory, sides: *sides }.take(pass, count);
+        let done = async |gpu: &Gpu| Ok(read(gpu, &memory.status, 1).await?[0]);
+        *status = batches.run(count, (&memory.status, &*status), work, done).await?;
         Ok((u64::from(self.status.steps), Halt::of(self.status.halted)))
     }
 
@@ -344,7 +341,7 @@ impl GpuSolver {
     ///
     /// # Errors
     /// [`GpuError::Lost`].
-    pub fn download(&self) -> Result<Downloaded, GpuError> {
+    pub async fn download(&self) -> Result<Downloaded, GpuError> {
         let Memory { columns, records, supplies, pushes, beyond, structure_discharges, .. } = &self.memory;
         let pushed = if self.sides.has_obstacles { self.sides.borders } else { 0 };
         let held = if self.sides.holds_levels { self.sides.borders } else { 0 };
@@ -358,7 +355,7 @@ impl GpuSolver {
             (structure_discharges, self.sides.structures * size_of::<f32>()),
         ];
         let [columns, records, supplies, pushes, beyond, discharges] =
-            read_together(self.batches.gpu(), parts, <[u8]>::to_vec)?;
+            read_together(self.batches.gpu(), parts, <[u8]>::to_vec).await?;
         let columns = bytemuck::pod_collect_to_vec::<u8, Column>(&columns);
         let (now, before) = columns.split_at(self.cells);
         let columns = [now, before].map(|columns| columns.iter().map(column_of).collect());

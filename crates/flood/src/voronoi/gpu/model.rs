@@ -6,9 +6,9 @@ use crate::voronoi::rain::Intensity;
 use crate::voronoi::rain::Weather;
 use crate::voronoi::structures::upload::set_flows;
 use crate::voronoi::{DENSITY, VoronoiFlood};
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Halt, PassTiming};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Halt, PassTiming, wait_for};
 use corpuscle_model::{
-    Account, AdvanceObserver, CpuOnly, ExactSum, Frame, Glance, GpuModel, Model, ModelError, ModelProgress,
+    Account, Advance, AdvanceObserver, CpuOnly, ExactSum, Frame, Glance, GpuModel, Model, ModelError, ModelProgress,
 };
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -91,20 +91,29 @@ impl GpuModel for VoronoiFlood {
                 next = show(self.glance()?);
                 continue;
             }
-            self.with_gpu(|flood, on_gpu| match is_step {
-                true => flood.step_once(on_gpu),
-                false => flood.step_to(on_gpu, until, stop),
-            })?;
+            wait_for(self.with_gpu(async |flood, on_gpu| match is_step {
+                true => flood.step_once(on_gpu).await,
+                false => flood.step_to(on_gpu, until, stop).await,
+            }))?;
             if !is_step && self.shown < until {
-                return self.with_gpu(Self::download);
+                return wait_for(self.with_gpu(Self::download));
             }
             next = show(self.glance()?);
             if !observer.progressed(self.progress()) {
-                return self.with_gpu(Self::download);
+                return wait_for(self.with_gpu(Self::download));
             }
         }
-        self.with_gpu(Self::download)?;
+        wait_for(self.with_gpu(Self::download))?;
         self.advance_with(time, stop, observer)
+    }
+
+    fn advance_later<'a>(&'a mut self, time: f64, stop: &'a AtomicBool) -> Advance<'a> {
+        Box::pin(async move {
+            if self.on_gpu.is_none() {
+                return self.advance_to(time, stop);
+            }
+            self.advance_on_gpu(time, stop).await
+        })
     }
 
     fn gpu_seconds(&self) -> Option<f64> {
@@ -145,26 +154,27 @@ impl VoronoiFlood {
     }
 
     /// Advances on the GPU, and downloads the state.
-    pub(in crate::voronoi) fn advance_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
-        self.with_gpu(|flood, on_gpu| {
-            flood.step_to(on_gpu, time, stop)?;
-            flood.download(on_gpu)
+    pub(in crate::voronoi) async fn advance_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        self.with_gpu(async |flood, on_gpu| {
+            flood.step_to(on_gpu, time, stop).await?;
+            flood.download(on_gpu).await
         })
+        .await
     }
 
     /// Calls `work` with the GPU where there is one.
-    fn with_gpu(
+    async fn with_gpu(
         &mut self,
-        work: impl FnOnce(&mut Self, &mut OnGpu) -> Result<(), ModelError>,
+        work: impl AsyncFnOnce(&mut Self, &mut OnGpu) -> Result<(), ModelError>,
     ) -> Result<(), ModelError> {
         let Some(mut on_gpu) = self.on_gpu.take() else { return Ok(()) };
-        let done = work(self, &mut on_gpu);
+        let done = work(self, &mut on_gpu).await;
         self.on_gpu = Some(on_gpu);
         done
     }
 
     /// Takes steps up to a time, s. The new state stays on the GPU: see [`VoronoiFlood::download`].
-    fn step_to(&mut self, on_gpu: &mut OnGpu, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+    async fn step_to(&mut self, on_gpu: &mut OnGpu, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         // Water in the air falls on the CPU.
         while !self.state.falling.is_empty() && self.state.time < time && !stop.load(Ordering::Relaxed) {
             self.step()?;
@@ -173,21 +183,21 @@ impl VoronoiFlood {
         let mut is_arrived = self.clock(on_gpu) >= time;
         while !is_arrived {
             if stop.load(Ordering::Relaxed) {
-                self.download(on_gpu)?;
+                self.download(on_gpu).await?;
                 self.shown = self.shown.max(self.state.time);
                 return Ok(());
             }
-            is_arrived = self.take_steps(on_gpu, time, u64::MAX)?;
+            is_arrived = self.take_steps(on_gpu, time, u64::MAX).await?;
         }
         self.shown = time;
         Ok(())
     }
 
     /// Takes a step, and shows its end.
-    fn step_once(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
+    async fn step_once(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
         if self.state.falling.is_empty() {
             let later = self.clock(on_gpu) + 2.0 * self.solver.longest;
-            self.take_steps(on_gpu, later, 1)?;
+            self.take_steps(on_gpu, later, 1).await?;
         } else {
             self.step()?;
             on_gpu.is_stale = true;
@@ -197,25 +207,25 @@ impl VoronoiFlood {
     }
 
     /// Takes steps up to a time, s, or some of them, `most` at most; whether it arrived there.
-    fn take_steps(&mut self, on_gpu: &mut OnGpu, time: f64, most: u64) -> Result<bool, ModelError> {
+    async fn take_steps(&mut self, on_gpu: &mut OnGpu, time: f64, most: u64) -> Result<bool, ModelError> {
         if std::mem::take(&mut on_gpu.is_stale) {
             self.upload(on_gpu)?;
         }
-        let most = self.adapt_cells(on_gpu)?.min(most);
-        let (steps, halt) = on_gpu.solver.advance(time, most).map_err(|error| device(&error))?;
+        let most = self.adapt_cells(on_gpu).await?.min(most);
+        let (steps, halt) = on_gpu.solver.advance(time, most).await.map_err(|error| device(&error))?;
         on_gpu.is_ahead = true;
         self.state.steps += steps;
         match halt {
             Halt::Full => Ok(false),
             Halt::Arrived => Ok(true),
-            Halt::NeedsHost => self.go_beyond_rim(on_gpu).map(|()| false),
-            Halt::Broken => Err(self.broken_on_gpu(on_gpu)),
+            Halt::NeedsHost => self.go_beyond_rim(on_gpu).await.map(|()| false),
+            Halt::Broken => Err(self.broken_on_gpu(on_gpu).await),
         }
     }
 
     /// Downloads the state of the GPU, where it is ahead.
-    fn download(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
-        if on_gpu.is_ahead { self.download_state(on_gpu) } else { Ok(()) }
+    async fn download(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
+        if on_gpu.is_ahead { self.download_state(on_gpu).await } else { Ok(()) }
     }
 
     /// Time at the end of the last step, s.
@@ -244,17 +254,17 @@ impl VoronoiFlood {
         if let Some(particles) = self.particles_on_gpu()? {
             return Ok(Glance { frame: Frame { time: self.shown, sets: Vec::new() }, on_device: Some(particles) });
         }
-        self.with_gpu(Self::download)?;
+        wait_for(self.with_gpu(Self::download))?;
         Ok(Glance { frame: self.frame(), on_device: None })
     }
 
     /// Refines and coarsens the cells, where a check is due. Returns the number of steps to the next check.
-    fn adapt_cells(&mut self, on_gpu: &mut OnGpu) -> Result<u64, ModelError> {
+    async fn adapt_cells(&mut self, on_gpu: &mut OnGpu) -> Result<u64, ModelError> {
         let Some(every) = self.steps_between_checks() else { return Ok(u64::MAX) };
         let steps = self.state.steps;
         if steps.is_multiple_of(every) && on_gpu.checked_before != Some(steps) {
             on_gpu.checked_before = Some(steps);
-            self.download_state(on_gpu)?;
+            self.download_state(on_gpu).await?;
             let remakes = self.state.remakes;
             self.adapt()?;
             if self.state.remakes > remakes {
@@ -265,8 +275,8 @@ impl VoronoiFlood {
     }
 
     /// Makes the missing tiles beside wet cells.
-    fn go_beyond_rim(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
-        self.download_state(on_gpu)?;
+    async fn go_beyond_rim(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
+        self.download_state(on_gpu).await?;
         let missing = self.solver.missing_tiles();
         self.make_tiles(missing)?;
         if self.solver.local.is_some() {
@@ -282,9 +292,9 @@ impl VoronoiFlood {
     }
 
     /// Downloads the state of the GPU: water, records, time and accounts.
-    fn download_state(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
+    async fn download_state(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
         let Downloaded { columns: [now, before], records, soaked, pushes, beyond, discharges } =
-            on_gpu.solver.download().map_err(|error| device(&error))?;
+            on_gpu.solver.download().await.map_err(|error| device(&error))?;
         on_gpu.is_ahead = false;
         let totals = on_gpu.solver.totals();
         let Totals { time, step, last_step, cell_steps, .. } = totals;
@@ -332,8 +342,8 @@ impl VoronoiFlood {
     }
 
     /// The error that says where a value is not finite; goes back to the state before.
-    fn broken_on_gpu(&mut self, on_gpu: &mut OnGpu) -> ModelError {
-        if let Err(error) = self.download_state(on_gpu) {
+    async fn broken_on_gpu(&mut self, on_gpu: &mut OnGpu) -> ModelError {
+        if let Err(error) = self.download_state(on_gpu).await {
             return error;
         }
         let is_broken = |column: &crate::voronoi::water::Column| {

@@ -3,7 +3,7 @@
 #import voronoi_storage
 
 fn particle_of(cell: u32) -> DeviceParticle {
-    var particle: DeviceParticle;
+    var particle = DeviceParticle();
     let now = columns[cell];
     let before = columns[parameters.cells + cell];
     let area = ground[cell].area;

@@ -24,7 +24,7 @@ mod twin;
 use super::droplet::Batch;
 use super::water::{LIFE, REACH};
 use crate::{HeightField, RenderError, Stage};
-use corpuscle_gpu::{DeviceParticles, Gpu, MOST_GROUPS, PassTiming, Stopwatch, THREADS, uniform, wgpu};
+use corpuscle_gpu::{DeviceParticles, Gpu, MOST_GROUPS, PassTiming, Stopwatch, THREADS, uniform, wait_for, wgpu};
 use glam::{DVec2, DVec3};
 use ground::Ground;
 use kernels::Kernels;
@@ -96,7 +96,7 @@ impl DeviceWater {
         if let Some((_, tasks)) = &mut self.drawn {
             tasks.run(gpu, &self.ground, self.stopwatch.as_mut());
         }
-        Ok(self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(gpu))?)
+        Ok(self.stopwatch.iter_mut().try_for_each(|stopwatch| wait_for(stopwatch.read(gpu)))?)
     }
 
     /// Times each kernel from the next update on, which then waits for the device.

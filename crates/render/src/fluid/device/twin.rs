@@ -6,7 +6,7 @@ use super::super::{FluidPainter, FluidStyle, Water};
 use super::DeviceWater;
 use crate::shared::{DropletInstance, Vertex};
 use crate::{Camera, Drawable, HeightField, Light, Renderer, Stage, Target};
-use corpuscle_gpu::{DeviceParticle, DeviceParticles, Gpu, Image, read, require_gpu};
+use corpuscle_gpu::{DeviceParticle, DeviceParticles, Gpu, Image, read, require_gpu, wait_for};
 use corpuscle_model::{Column, ParticleSet, Values};
 
 /// Where all of it lies, m: coordinates are large.
@@ -81,10 +81,10 @@ fn send(gpu: &Gpu, set: &ParticleSet, particles: &DeviceParticles) {
 /// What is drawn, by ids.
 fn drawn(gpu: &Gpu, water: &DeviceWater) -> Vec<DropletInstance> {
     let Some(Batch::Indirect { instances, draw_args, at, .. }) = water.droplets() else { panic!("nothing is drawn") };
-    let draw_args: Vec<u32> = read(gpu, &draw_args, at as usize / 4 + 4).unwrap();
+    let draw_args: Vec<u32> = wait_for(read(gpu, &draw_args, at as usize / 4 + 4)).unwrap();
     let [corners, count, ..] = draw_args[at as usize / 4..] else { panic!("there are no arguments of a draw") };
     assert_eq!(corners, 4);
-    let mut all: Vec<DropletInstance> = read(gpu, &instances, count as usize).unwrap();
+    let mut all: Vec<DropletInstance> = wait_for(read(gpu, &instances, count as usize)).unwrap();
     all.sort_by(|a, b| a.matter[3].total_cmp(&b.matter[3]));
     all
 }
@@ -137,7 +137,7 @@ fn the_water_at_the_borders_has_the_faces_that_the_cpu_finds() {
     send(&gpu, &set, &particles);
     device.update(&gpu, 0.0, &particles).unwrap();
     let (buffer, count) = device.faces().unwrap();
-    let found: Vec<Vertex> = read(&gpu, &buffer, count as usize).unwrap();
+    let found: Vec<Vertex> = wait_for(read(&gpu, &buffer, count as usize)).unwrap();
     let found: Vec<&[Vertex]> = found.chunks(6).filter(|face| face[0].place != face[1].place).collect();
     let droplets = Water::default().droplets(0.0, &set, |place| field.slope_at(place));
     let wanted = faces(&stage(), &field, &droplets);
