@@ -274,6 +274,22 @@ test("the start page has a live picture of each model", { timeout: 240_000 }, as
   await stage.close();
 });
 
+test("the guide is searched", { timeout: 60_000 }, async () => {
+  const stage = await Stage.open(browser, `${address}/guide/introduction.html`);
+  const { page } = stage;
+  await page.keyboard.press("/");
+  await page.keyboard.type("manning roughness");
+  await page.locator("#found li a").first().waitFor();
+  await stage.shot("search");
+  assert.match(await page.locator("#found li").first().innerText(), /manning/i);
+  await page.keyboard.press("Enter");
+  await page.waitForURL(/\.html#/);
+  await page.locator("#search").fill("no such words <b>");
+  await page.getByText("Nothing found").waitFor();
+  assert.deepEqual(stage.errors, []);
+  await stage.close();
+});
+
 test("after the first visit it works without a network", { timeout: 120_000 }, async () => {
   const stage = await Stage.open(browser, `${address}/app/#gas/maxwell`);
   await stage.until("it plays", (state) => state.time > 0);

@@ -3,6 +3,7 @@
 use super::write as write_file;
 use anyhow::{Context, Result, ensure};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
+use serde::Serialize;
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::fs;
@@ -17,6 +18,7 @@ pub fn write(source: &Path, out: &Path) -> Result<()> {
     let summary = read("SUMMARY.md")?;
     let pages = pages(&summary);
     ensure!(!pages.is_empty(), "docs/src/SUMMARY.md names no page");
+    let mut sections = Vec::new();
     for page in &pages {
         let navigation =
             page_html(&summary).replace(&format!("href=\"{}\"", html_name(page)), "class=\"here\" href=\"\"");
@@ -27,7 +29,10 @@ pub fn write(source: &Path, out: &Path) -> Result<()> {
             .replace("{navigation}", &navigation)
             .replace("{content}", &content);
         write_file(&out.join(html_name(page)), whole.as_bytes())?;
+        sections.extend(sections_of(page, &text));
     }
+    write_file(&out.join("search.json"), &serde_json::to_vec(&sections)?)?;
+    write_file(&out.join("search.js"), include_bytes!("../../pages/search.js"))?;
     let first = html_name(&pages[0]);
     let forward = format!(
         "<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"0; url={first}\"><a href=\"{first}\">The guide</a>"
@@ -38,6 +43,43 @@ pub fn write(source: &Path, out: &Path) -> Result<()> {
         write_file(&out.join(file), &fs::read(source.join(file))?)?;
     }
     Ok(())
+}
+
+/// What the search finds: a heading of a page with the text below it, up to the next.
+#[derive(Debug, Serialize)]
+struct Section {
+    /// Its address in the guide.
+    link: String,
+    /// The title of its page.
+    page: String,
+    heading: String,
+    text: String,
+}
+
+/// The sections of a page.
+fn sections_of(page: &str, text: &str) -> Vec<Section> {
+    let events: Vec<_> = Parser::new_ext(text, options()).collect();
+    let (mut known, mut sections, mut is_heading) = (HashMap::new(), Vec::<Section>::new(), false);
+    for (at, event) in events.iter().enumerate() {
+        if let Event::Start(Tag::Heading { .. }) = event {
+            let link = format!("{}#{}", html_name(page), anchor(&events[at + 1..], &mut known));
+            is_heading = true;
+            sections.push(Section { link, page: title(text), heading: String::new(), text: String::new() });
+        }
+        let Some(section) = sections.last_mut() else { continue };
+        let into = if is_heading { &mut section.heading } else { &mut section.text };
+        match event {
+            Event::Text(part) | Event::Code(part) => into.push_str(part),
+            Event::SoftBreak | Event::HardBreak => into.push(' '),
+            Event::End(TagEnd::Heading(_)) => is_heading = false,
+            Event::End(TagEnd::Paragraph | TagEnd::Item | TagEnd::TableCell | TagEnd::CodeBlock) => into.push(' '),
+            _ => {}
+        }
+    }
+    for section in &mut sections {
+        section.text = section.text.split_whitespace().collect::<Vec<_>>().join(" ");
+    }
+    sections
 }
 
 /// The pages that the summary names, in order.
@@ -71,8 +113,7 @@ fn title(text: &str) -> String {
 
 /// A page's Markdown as HTML: links lead to pages of the site, headings can be linked to, tables scroll by themselves.
 fn page_html(text: &str) -> String {
-    let options = Options::ENABLE_TABLES | Options::ENABLE_FOOTNOTES | Options::ENABLE_STRIKETHROUGH;
-    let events: Vec<_> = Parser::new_ext(text, options).collect();
+    let events: Vec<_> = Parser::new_ext(text, options()).collect();
     let mut known = HashMap::new();
     let mut written = Vec::with_capacity(events.len());
     for (at, event) in events.iter().enumerate() {
@@ -102,6 +143,11 @@ fn page_html(text: &str) -> String {
     let mut html = String::new();
     html::push_html(&mut html, written.into_iter());
     html
+}
+
+/// The extensions of Markdown that the guide has.
+fn options() -> Options {
+    Options::ENABLE_TABLES | Options::ENABLE_FOOTNOTES | Options::ENABLE_STRIKETHROUGH
 }
 
 fn tag(level: HeadingLevel) -> String {
@@ -182,6 +228,27 @@ mod tests {
             }
         }
         assert!(links > 1000, "{links}");
+        let sections =
+            serde_json::from_slice::<Vec<HashMap<String, String>>>(&fs::read(out.join("search.json")).unwrap());
+        let sections = sections.unwrap();
+        for link in sections.iter().map(|section| &section["link"]) {
+            let (page, place) = link.split_once('#').unwrap();
+            let html = fs::read_to_string(out.join(page)).unwrap();
+            assert!(values(&html, "id").contains(&place), "{link}");
+        }
+        assert!(sections.len() > 300, "{}", sections.len());
+    }
+
+    #[test]
+    fn sections_have_their_place_and_their_text() {
+        let sections =
+            sections_of("a.md", "# A `b`\n\nOne\ntwo.\n\n| x | y |\n|---|---|\n| 1 | `2` |\n\n## A b\n\nThree.\n");
+        let [first, second] = &sections[..] else { panic!("{sections:?}") };
+        assert_eq!(
+            [&first.link, &first.page, &first.heading, &first.text],
+            ["a.html#a-b", "A b", "A b", "One two. x y 1 2"]
+        );
+        assert_eq!([&second.link, &second.heading, &second.text], ["a.html#a-b-1", "A b", "Three."]);
     }
 
     #[test]
