@@ -32,10 +32,10 @@ pub fn ensemble(options: &EnsembleOptions, arguments: &Arguments) -> anyhow::Res
     let members = members(options, file.plan.rows.len())?;
     let path = options.output.clone().unwrap_or_else(|| default_folder(&options.plan));
     let folder = Folder::prepare(&path, &file.source, &file.plan, &file.statistics)?;
-    eprintln!("{} members in {}", file.plan.rows.len(), path.display());
+    tell!("{} members in {}", file.plan.rows.len(), path.display());
     run_members(&folder, &file, &members, workers(options, arguments, members.len()), &stop)?;
     if stop.load(Ordering::Relaxed) {
-        eprintln!("interrupted; the same command goes on with the members that are missing");
+        tell!("interrupted; the same command goes on with the members that are missing");
         return Ok(ExitCode::FAILURE);
     }
     let written = match options.member.as_slice() {
@@ -79,7 +79,7 @@ fn run_members(
     let ended = run(folder, &file.source, members, workers, stop, &mut |progress| bar.show(progress, start.elapsed()));
     bar.clear();
     ended?;
-    eprintln!("members ran for {}", duration(start.elapsed().as_secs_f64()));
+    tell!("members ran for {}", duration(start.elapsed().as_secs_f64()));
     Ok(())
 }
 
@@ -91,12 +91,12 @@ fn finish(folder: &Folder, members: &[usize], written: Option<&Written>, as_json
         finished += usize::from(record.is_finished());
         if let Some(failure) = &record.error {
             failed += 1;
-            eprintln!("member {number} failed: {}", failure.message);
+            tell!("member {number} failed: {}", failure.message);
         }
     }
-    eprintln!("{finished} of {} members are finished, {failed} failed", members.len());
+    tell!("{finished} of {} members are finished, {failed} failed", members.len());
     if let Some(Written { folder, report, maps }) = written {
-        eprintln!("{maps} maps and tables in {}, report in {}", folder.display(), report.display());
+        tell!("{maps} maps and tables in {}, report in {}", folder.display(), report.display());
     }
     if as_json {
         let report = written.map(|written| written.report.as_path());

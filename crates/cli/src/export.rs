@@ -16,7 +16,7 @@ pub fn export(options: &ExportOptions, as_json: bool) -> anyhow::Result<ExitCode
     for file in &options.files {
         let format = export_file(&options.run, file)?;
         let bytes = std::fs::metadata(file)?.len();
-        eprintln!("wrote {}: {format}, {:.1} MB", file.display(), bytes as f64 / 1e6);
+        tell!("wrote {}: {format}, {:.1} MB", file.display(), bytes as f64 / 1e6);
         written.push(json!({ "file": file, "format": format.ending(), "bytes": bytes }));
     }
     if as_json {

@@ -2,6 +2,16 @@
 //!
 //! Exit status: 0 done, 1 the run was interrupted, a run or a validation failed, 2 the input was refused.
 
+#![deny(clippy::print_stderr, clippy::print_stdout)]
+
+/// Writes a line to standard error. Where that cannot be written, as to a full disk, nobody can be told, and the work goes on.
+macro_rules! tell {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($text)*);
+    }};
+}
+
 mod args;
 mod bench;
 mod check;
@@ -53,7 +63,7 @@ fn run_arguments(arguments: &Arguments, view: fn(&ViewOptions) -> anyhow::Result
     match dispatch(arguments, view) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {}", refusal::in_words(&error));
+            tell!("error: {}", refusal::in_words(&error));
             if refusal::is_refusal(&error) { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }

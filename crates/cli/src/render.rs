@@ -41,7 +41,7 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     let simulation = Simulation::open_to_restore(scene, &options.run)?;
     let settings = picture_settings(options.size, options.samples, &options.picture)?;
     let mut pictures = Pictures::open(&simulation, settings)?;
-    eprintln!("drawing on {}", pictures.device());
+    tell!("drawing on {}", pictures.device());
     let walls = WallPlaces::read(&options.run).map_err(corpuscle::Error::from)?;
     let at_start = simulation.model().container();
     let mut draw = |index: usize| -> Result<(f64, Image), corpuscle::Error> {
@@ -58,7 +58,7 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
         let (time_s, Image { width, height, rgba }) = draw(index)?;
         let file = options.run.join("pictures").join(format!("picture_{index:06}.png"));
         write_picture(&file, [width, height], &rgba).map_err(corpuscle::Error::from)?;
-        eprintln!("{}", file.display());
+        tell!("{}", file.display());
         drawn.push(Drawn { time_s, file });
     }
     show_in_report(&options.run)?;
@@ -71,7 +71,7 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
 /// Puts what was drawn into the run's report, where it has one.
 fn show_in_report(run: &Path) -> anyhow::Result<()> {
     if put_into_report(run).map_err(corpuscle::Error::from)? {
-        eprintln!("{} was updated", run.join("report.html").display());
+        tell!("{} was updated", run.join("report.html").display());
     }
     Ok(())
 }
@@ -89,7 +89,7 @@ fn film(
     for index in 0..frames {
         let (_, image) = draw(index)?;
         film.add(&image.rgba).map_err(corpuscle::Error::from)?;
-        eprintln!("picture {} of {frames}", index + 1);
+        tell!("picture {} of {frames}", index + 1);
     }
     let pictures = film.pictures();
     film.finish().map_err(corpuscle::Error::from)?;
@@ -97,7 +97,7 @@ fn film(
         show_in_report(&options.run)?;
     }
     let duration_s = pictures as f64 / options.rate;
-    eprintln!("{}: {pictures} pictures, {duration_s} s", file.display());
+    tell!("{}: {pictures} pictures, {duration_s} s", file.display());
     if as_json {
         print_json(&Filmed { file, pictures, duration_s }).context("cannot write the description of the film")?;
     }

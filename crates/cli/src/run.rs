@@ -24,12 +24,12 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
         None => start(options, &stop)?,
     };
     for note in simulation.notes() {
-        eprintln!("note: {note}");
+        tell!("note: {note}");
     }
     for warning in simulation.warnings() {
-        eprintln!("warning: {warning}");
+        tell!("warning: {warning}");
     }
-    eprintln!("writing {}", recorder.path().display());
+    tell!("writing {}", recorder.path().display());
     let mut filming = filming(options, &simulation, recorder.path())?;
     let bar = Bar::new()?;
     let mut sinks: Vec<&mut dyn Sink> = vec![&mut recorder];
@@ -56,11 +56,11 @@ fn filming(options: &RunOptions, simulation: &Simulation, folder: &Path) -> anyh
     let settings = picture_settings(options.film_size, 1, &options.picture)?;
     match Filming::open(simulation, &folder.join("film.mp4"), settings, options.film_length) {
         Ok(filming) => {
-            eprintln!("filming on {}", filming.device());
+            tell!("filming on {}", filming.device());
             Ok(Some(filming))
         }
         Err(error @ corpuscle::Error::Render(_)) if !error.is_refusal() => {
-            eprintln!("warning: no film: {error}");
+            tell!("warning: no film: {error}");
             Ok(None)
         }
         Err(error) => Err(error.into()),
@@ -71,7 +71,7 @@ fn resume(folder: &Path, backend: Backend) -> anyhow::Result<(Simulation, Record
     let (mut simulation, recorder) = Recorder::resume(folder)?;
     match backend {
         // So that an interruption does not change the backend, and with it the last digits.
-        Backend::Auto => eprintln!("resuming on the CPU; `--backend gpu` resumes on a GPU"),
+        Backend::Auto => tell!("resuming on the CPU; `--backend gpu` resumes on a GPU"),
         _ => compute_on(backend, &mut simulation)?,
     }
     Ok((simulation, recorder))
@@ -83,7 +83,7 @@ fn compute_on(backend: Backend, simulation: &mut Simulation) -> Result<(), corpu
         Backend::Auto => {
             let Choice { is_gpu, why } = simulation.use_best();
             let reason = if why.is_empty() { String::new() } else { format!(": {why}") };
-            eprintln!("computing on the {}{reason}", if is_gpu { "GPU" } else { "CPU" });
+            tell!("computing on the {}{reason}", if is_gpu { "GPU" } else { "CPU" });
             Ok(())
         }
         Backend::Cpu => Ok(()),
@@ -137,10 +137,10 @@ fn print_summary(summary: &Summary, folder: &Path, has_frames: bool) {
     let folder = folder.display();
     if summary.status == Status::Stopped {
         let time = number(summary.simulated_time_s);
-        eprintln!("interrupted at t = {time}; resume with\n    corpuscle run --resume {folder}");
+        tell!("interrupted at t = {time}; resume with\n    corpuscle run --resume {folder}");
         return;
     }
-    eprintln!(
+    tell!(
         "done in {}: t = {}, {} particles, {}",
         duration(summary.wall_time_s),
         number(summary.simulated_time_s),
@@ -150,11 +150,11 @@ fn print_summary(summary: &Summary, folder: &Path, has_frames: bool) {
     for (quantity, entry) in &summary.ledger {
         let [initial, inflow, outflow, end] = [entry.initial, entry.inflow, entry.outflow, entry.end].map(number);
         let error = number(entry.relative_error);
-        eprintln!("{quantity}: {initial} at the start, {inflow} in, {outflow} out, {end} now; relative error {error}");
+        tell!("{quantity}: {initial} at the start, {inflow} in, {outflow} out, {end} now; relative error {error}");
     }
-    eprintln!("results in {folder}");
+    tell!("results in {folder}");
     if has_frames {
         // Not checked here whether there is a GPU: `render` says what to install.
-        eprintln!("pictures with `corpuscle render {folder}`, on any GPU or software Vulkan (mesa-vulkan-drivers)");
+        tell!("pictures with `corpuscle render {folder}`, on any GPU or software Vulkan (mesa-vulkan-drivers)");
     }
 }

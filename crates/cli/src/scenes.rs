@@ -51,6 +51,6 @@ fn copy(scene: Builtin, file: &Path, as_json: bool) -> anyhow::Result<()> {
         _ => anyhow::Error::new(error).context(format!("cannot write {}", file.display())),
     })?;
     out.write_all(scene.text.as_bytes()).with_context(|| format!("cannot write {}", file.display()))?;
-    eprintln!("{} copied to {}; run it with `corpuscle run {}`", scene.name, file.display(), file.display());
+    tell!("{} copied to {}; run it with `corpuscle run {}`", scene.name, file.display(), file.display());
     if as_json { print_json(&json!({ "name": scene.name, "file": file })) } else { Ok(()) }
 }

@@ -26,7 +26,7 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
     chosen.retain(|case| !options.fast || !case.slow);
     if with.gpu.is_some() {
         for case in chosen.extract_if(.., |case| case.name.starts_with("gas/")) {
-            eprintln!("{} left out: it computes on the CPU only", case.name);
+            tell!("{} left out: it computes on the CPU only", case.name);
         }
     }
     let mut rows = Vec::new();
@@ -35,7 +35,7 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
         for row in of_case {
             let line = line(&row);
             if as_json {
-                eprint!("{line}");
+                tell!("{}", line.trim_end_matches('\n'));
             } else {
                 print(&line)?;
             }
@@ -54,7 +54,7 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
     let count = |verdict: Option<bool>| rows.iter().filter(|row| row.pass == verdict).count();
     let failed = count(Some(false));
     let skipped = rows.iter().filter(|row| row.pass.is_none() && row.value.is_none()).count();
-    eprintln!("{} passed, {failed} failed, {skipped} skipped", count(Some(true)));
+    tell!("{} passed, {failed} failed, {skipped} skipped", count(Some(true)));
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
@@ -97,7 +97,7 @@ fn each(
         let mut taken = 0;
         for (ended, (index, done)) in receiver.into_iter().enumerate() {
             let (name, seconds) = (cases[index].name, done.took.as_secs_f64());
-            eprintln!("{name} took {seconds:.1} s ({} of {} cases)", ended + 1, cases.len());
+            tell!("{name} took {seconds:.1} s ({} of {} cases)", ended + 1, cases.len());
             waiting.insert(index, done);
             while let Some(done) = waiting.remove(&taken) {
                 take(cases[taken], done)?;

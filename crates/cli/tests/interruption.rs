@@ -1,14 +1,16 @@
 //! Runs that are interrupted, by hand or by a full disk.
 #![cfg(unix)]
 
+mod results;
 mod tool;
 
+use results::{compare, results};
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
-use tool::{BALLS, Ended, LAKE, Place};
+use tool::{BALLS, DEW, Ended, LAKE, Place};
 
 /// What makes the small lake slosh, and long enough to be interrupted.
 const LONG: [&str; 6] = [
@@ -40,23 +42,6 @@ fn wait_for_rows(child: &mut Child, gauges: &Path, rows: usize) {
 
 fn signal(name: &str, child: &Child) {
     assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
-}
-
-/// All files of a run that do not depend on the clock on the wall, by name.
-fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut found = Vec::new();
-    for sub in ["", "frames", "maps", "charts"] {
-        let entries = fs::read_dir(folder.join(sub));
-        for entry in entries.into_iter().flatten() {
-            let path = entry.unwrap().path();
-            let name = path.strip_prefix(folder).unwrap().display().to_string();
-            if path.is_file() && !["summary.json", "report.html", "log.txt"].contains(&name.as_str()) {
-                found.push((name, fs::read(path).unwrap()));
-            }
-        }
-    }
-    found.sort();
-    found
 }
 
 #[test]
@@ -93,14 +78,7 @@ fn interrupted_and_resumed(scene: &str, long: &[&str]) {
     child.wait().unwrap();
 
     place.run(&["run", "--resume", "stopped", "--threads", "1"]).expect_status(0);
-    let found = results(&place.path("stopped"));
-    assert_eq!(
-        found.iter().map(|file| &file.0).collect::<Vec<_>>(),
-        expected.iter().map(|file| &file.0).collect::<Vec<_>>()
-    );
-    for (found, expected) in found.iter().zip(&expected) {
-        assert!(found == expected, "{} differs", found.0);
-    }
+    compare(&results(&place.path("stopped")), &expected, "interrupted and killed");
     assert!(place.path("stopped/report.html").is_file());
 }
 
@@ -136,21 +114,8 @@ fn killed_and_resumed(changes: &[&str]) {
     }
     place.run(&["run", "--resume", "killed"]).expect_status(0);
     let [found, expected] = ["killed", "whole"].map(|folder| results(&place.path(folder)));
-    assert_eq!(found.len(), expected.len());
-    for (found, expected) in found.iter().zip(&expected) {
-        assert!(found == expected, "{} differs", expected.0);
-    }
+    compare(&found, &expected, "killed ten times");
 }
-
-/// Humid air before a cold pane, small enough to be opened at once.
-const DEW: &str = "run = { until_s = 0.6, frame_every_s = 0.1, gauge_every_s = 0.01, checkpoint_every_wall_s = 0.005 }
-[dew]
-size_m = [0.04, 0.03, 0.03]
-spacing_m = 0.005
-air = { temperature_c = 25.0, relative_humidity = 0.9 }
-drops = { sites_per_m2 = 1e4, smallest_radius_m = 1e-4 }
-solid = [{ name = \"pane\", shape = { box = { size_m = [0.005, 0.03, 0.03] } }, position_m = [0.0025, 0.015, 0.015], temperature_c = 5.0, held = true }]
-";
 
 /// Each model with what makes it run long enough, and checkpoints all the while.
 fn models() -> [(&'static str, &'static str, Vec<&'static str>); 4] {
@@ -172,14 +137,7 @@ fn ended_at_random_moments(signals: &[&str], moments: u64) {
         place.run(&[&["run", "scene.toml", "-o", "whole"], &long[..]].concat()).expect_status(0);
         let duration = start.elapsed();
         let expected = results(&place.path("whole"));
-        let compare = |when: &str| {
-            let found = results(&place.path("ended"));
-            let names = |files: &[(String, Vec<u8>)]| files.iter().map(|file| file.0.clone()).collect::<Vec<_>>();
-            assert_eq!(names(&found), names(&expected), "{model}, {when}");
-            for (found, expected) in found.iter().zip(&expected) {
-                assert!(found == expected, "{model}, {when}: {} differs", found.0);
-            }
-        };
+        let compare = |when: &str| compare(&results(&place.path("ended")), &expected, &format!("{model}, {when}"));
         let begin = |resumes: bool| match resumes {
             true => vec!["run", "--resume", "ended"],
             false => [&["run", "scene.toml", "-o", "ended"], &long[..]].concat(),

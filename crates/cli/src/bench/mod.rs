@@ -16,11 +16,11 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
     let mut rates = Vec::new();
     for bench in select(&benches(), |bench| bench.name, &options.names)? {
         if with.gpu.is_some() && bench.name.starts_with("gas/") {
-            eprintln!("{} left out: it computes on the CPU only", bench.name);
+            tell!("{} left out: it computes on the CPU only", bench.name);
             continue;
         }
         if with.gpu.is_none() && bench.needs_gpu {
-            eprintln!("{} left out: it needs a GPU", bench.name);
+            tell!("{} left out: it needs a GPU", bench.name);
             continue;
         }
         let drawn = match &with.gpu {
@@ -30,7 +30,7 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
         for rate in (bench.run)(&with).into_iter().chain(drawn) {
             let line = line(&rate);
             if as_json {
-                eprint!("{line}");
+                tell!("{}", line.trim_end_matches('\n'));
             } else {
                 print(&line)?;
             }

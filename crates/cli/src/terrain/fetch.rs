@@ -22,7 +22,7 @@ pub fn fetch(options: &FetchOptions, as_json: bool) -> anyhow::Result<()> {
     let fetched = fetch::fetch(&source, &options.bbox, &watch);
     bar.finish_and_clear();
     let fetched = fetched.map_err(corpuscle::Error::from)?;
-    eprintln!("{} MB downloaded", megabytes(fetched.bytes));
+    tell!("{} MB downloaded", megabytes(fetched.bytes));
     write(&options.output, &fetched.raster)?;
     if as_json {
         print_json(&json!({
@@ -46,7 +46,7 @@ pub fn fetch_for(scene: &Scene, stop: &Arc<AtomicBool>) -> anyhow::Result<()> {
     let came = corpuscle::fetch_terrain(scene, &watch);
     bar.finish_and_clear();
     if came? > 0 {
-        eprintln!("the terrain was downloaded into the cache");
+        tell!("the terrain was downloaded into the cache");
     }
     Ok(())
 }

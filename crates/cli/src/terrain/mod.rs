@@ -37,8 +37,8 @@ fn check_is_new(path: &Path) -> anyhow::Result<()> {
 fn write(path: &Path, raster: &Raster) -> anyhow::Result<()> {
     write_raster(path, raster, NO_DATA).map_err(corpuscle::Error::from)?;
     for warning in &raster.warnings {
-        eprintln!("note: {warning}");
+        tell!("note: {warning}");
     }
-    eprintln!("wrote {}: {} x {} cells", path.display(), raster.columns, raster.rows);
+    tell!("wrote {}: {} x {} cells", path.display(), raster.columns, raster.rows);
     Ok(())
 }

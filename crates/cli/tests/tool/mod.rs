@@ -48,6 +48,17 @@ mass = 1.0
 temperature = 100.0
 ";
 
+/// Humid air before a cold pane, small enough to be opened at once.
+#[allow(dead_code, reason = "not every test uses it")]
+pub const DEW: &str = "run = { until_s = 0.6, frame_every_s = 0.1, gauge_every_s = 0.01, checkpoint_every_wall_s = 0.005 }
+[dew]
+size_m = [0.04, 0.03, 0.03]
+spacing_m = 0.005
+air = { temperature_c = 25.0, relative_humidity = 0.9 }
+drops = { sites_per_m2 = 1e4, smallest_radius_m = 1e-4 }
+solid = [{ name = \"pane\", shape = { box = { size_m = [0.005, 0.03, 0.03] } }, position_m = [0.0025, 0.015, 0.015], temperature_c = 5.0, held = true }]
+";
+
 /// An ESRI ASCII grid with a valley down its middle.
 pub const SMALL_TERRAIN: &str = "ncols 5\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\n\
     9 5 1 5 9\n9 5 2 5 9\n9 5 3 5 9\n9 5 4 5 9\n";
