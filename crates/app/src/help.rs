@@ -3,7 +3,7 @@
 use egui::{Context, Grid, Modal, RichText};
 
 /// Keys and pointer actions, each with its effect.
-const ROWS: [(&str, &str); 17] = [
+const ROWS: [(&str, &str); 19] = [
     ("Space", "play and pause"),
     ("Right arrow", "one step"),
     ("R", "restart with the parameters as set"),
@@ -15,6 +15,8 @@ const ROWS: [(&str, &str); 17] = [
     ("G", "scenes"),
     ("P", "parameters"),
     ("L", "plots"),
+    ("M", "ruler: drag its ends"),
+    ("W", "stopwatch of simulated time"),
     ("Drag", "rotate; pan a two-dimensional gas"),
     ("Drag with the right button, or Shift", "pan"),
     ("Wheel", "zoom"),

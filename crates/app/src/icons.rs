@@ -27,6 +27,10 @@ pub enum Icon {
     Sliders,
     /// The plots.
     Plot,
+    /// The ruler.
+    Ruler,
+    /// The stopwatch.
+    Stopwatch,
     /// Help.
     Help,
     /// Reset a value.
@@ -147,6 +151,22 @@ pub fn paint(ui: &Ui, icon: Icon, rect: Rect, colour: Color32) {
         Icon::Plot => {
             stroke(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0)]);
             stroke(&[(0.15, 0.75), (0.4, 0.35), (0.62, 0.55), (0.95, 0.1)]);
+        }
+        Icon::Ruler => {
+            painter.rect_stroke(
+                Rect::from_two_pos(at(-0.05, 0.28), at(1.05, 0.72)),
+                CornerRadius::same(1),
+                line,
+                egui::StrokeKind::Middle,
+            );
+            for (x, y) in [(0.22, 0.52), (0.5, 0.6), (0.78, 0.52)] {
+                stroke(&[(x, 0.28), (x, y)]);
+            }
+        }
+        Icon::Stopwatch => {
+            painter.circle_stroke(at(0.5, 0.58), 0.42 * rect.width(), line);
+            stroke(&[(0.5, 0.58), (0.68, 0.4)]);
+            bar(0.38, -0.06, 0.62, 0.06);
         }
         Icon::Help => {
             let centre = rect.center();

@@ -11,6 +11,7 @@ mod gallery;
 mod gas_controls;
 mod help;
 mod icons;
+mod instruments;
 pub mod link;
 mod meshes;
 mod meter;

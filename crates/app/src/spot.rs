@@ -56,6 +56,17 @@ impl Spot {
         Self { place: [x, y, terrain.height(x, y)], gauged: false }
     }
 
+    /// The spot of the terrain that is nearest to a position.
+    pub fn within(terrain: &Terrain, [x, y, z]: [f64; 3]) -> Self {
+        let bounds = terrain.bounds();
+        Self::under(terrain, [x.clamp(bounds.x_min, bounds.x_max), y.clamp(bounds.y_min, bounds.y_max), z])
+    }
+
+    /// Position and bed elevation, in model coordinates, m.
+    pub fn place(&self) -> [f64; 3] {
+        self.place
+    }
+
     /// Where it is, in model coordinates, m.
     pub fn at_model(&self) -> [f64; 2] {
         [self.place[0], self.place[1]]

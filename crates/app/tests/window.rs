@@ -334,3 +334,68 @@ fn a_window_as_narrow_as_a_phone_has_the_picture_and_one_panel() {
     stage.click("Plots");
     assert!(!stage.has("Heat"));
 }
+
+/// A ruler keeps its length in the world however the picture is zoomed, and its ends are dragged; on a flood it lies on the ground.
+#[test]
+fn a_ruler_measures_lengths_of_the_world() {
+    let Some(mut stage) = stage("the ruler") else { return };
+    stage.window_mut().wait_at_start();
+    stage.choose("Brownian motion");
+    stage.until(SOON, "the gas", |window| !window.is_waiting() && window.snapshot().is_some());
+    stage.run(Duration::from_millis(100));
+    assert_eq!(stage.window().ruler_length(), None);
+    stage.click("Ruler");
+    stage.run(Duration::from_millis(100));
+    let first = stage.window().ruler_length().unwrap();
+    // A quarter of the width of the picture or so, at first.
+    let point = first / (0.24 * f64::from(stage.picture_size()[0]));
+    stage.drag("Ruler, second end", [60.0, 0.0]);
+    let longer = stage.window().ruler_length().unwrap();
+    assert!((longer - first - 60.0 * point).abs() < 2.0 * point, "{first} {longer} {point}");
+    stage.drag("Ruler, first end", [0.0, 80.0]);
+    let slanted = stage.window().ruler_length().unwrap();
+    assert!((slanted - longer.hypot(80.0 * point)).abs() < 2.0 * point, "{slanted}");
+    stage.zoom(1.5);
+    assert_eq!(stage.window().ruler_length(), Some(slanted));
+    stage.picture("ruler");
+    stage.key(egui::Key::M);
+    assert_eq!(stage.window().ruler_length(), None);
+
+    stage.choose("Dam break in a channel");
+    stage.until(SOON, "the flood", |window| !window.is_waiting() && window.snapshot().is_some());
+    stage.run(Duration::from_millis(100));
+    stage.key(egui::Key::M);
+    stage.run(Duration::from_millis(100));
+    let before = stage.window().ruler_length().unwrap();
+    stage.drag("Ruler, second end", [60.0, 0.0]);
+    assert!(stage.window().ruler_length().unwrap() > before);
+    stage.picture("ruler-flood");
+}
+
+/// The stopwatch counts simulated time while it runs, and the collisions of the followed ball.
+#[test]
+fn a_stopwatch_counts_simulated_time() {
+    let Some(mut stage) = stage("the stopwatch") else { return };
+    stage.window_mut().wait_at_start();
+    stage.choose("Brownian motion");
+    stage.until(SOON, "the gas", |window| !window.is_waiting() && window.snapshot().is_some());
+    stage.steps(1);
+    let began = stage.time();
+    stage.key(egui::Key::W);
+    stage.click("Start");
+    stage.steps(3);
+    let lap = stage.time() - began;
+    assert!((stage.window().stopwatch_time().unwrap() - lap).abs() < 1e-12 * lap);
+    stage.click("Lap");
+    stage.steps(2);
+    stage.click("Stop");
+    let stopped = stage.time() - began;
+    stage.steps(1);
+    assert!((stage.window().stopwatch_time().unwrap() - stopped).abs() < 1e-12 * stopped);
+    assert!(stage.has("collisions of the followed ball") && stage.has("lap 1"));
+    stage.picture("stopwatch");
+    stage.click("Reset");
+    assert_eq!(stage.window().stopwatch_time(), Some(0.0));
+    stage.click("Put the stopwatch away");
+    assert_eq!(stage.window().stopwatch_time(), None);
+}

@@ -196,6 +196,16 @@ impl Picture {
         self.key_height
     }
 
+    /// The point of the world, m, that appears at a position in the window, in the plane through the camera's target that faces the camera: of a
+    /// flat gas its own plane. None before the first picture.
+    pub fn below(&self, rect: Rect, at: Pos2) -> Option<[f64; 3]> {
+        let shown = self.shown.as_ref()?;
+        let [right, up] = axes(shown);
+        let point = height(shown) / f64::from(rect.height());
+        let off = at - rect.center();
+        Some((shown.camera.target + point * (f64::from(off.x) * right - f64::from(off.y) * up)).into())
+    }
+
     /// True where the last picture has full quality.
     pub fn is_complete(&self) -> bool {
         self.drawn.as_ref().is_some_and(|drawn| drawn.samples > 1 || self.is_sketch())

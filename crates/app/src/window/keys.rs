@@ -42,6 +42,12 @@ impl Window {
         if pressed(Key::T) && !open.is_flat() {
             open.picture.camera_offset.plan = !open.picture.camera_offset.plan;
         }
+        if pressed(Key::M) {
+            open.instruments.toggle_ruler();
+        }
+        if pressed(Key::W) {
+            open.instruments.toggle_stopwatch();
+        }
         if pressed(Key::Escape) {
             (open.picked, open.spot, open.clicked) = (None, None, None);
         }

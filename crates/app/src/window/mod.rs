@@ -14,6 +14,7 @@ pub use source::{Source, Start};
 use crate::background_device::BackgroundDevice;
 use crate::gallery::Gallery;
 use crate::gas_controls::GasControls;
+use crate::instruments::{Instruments, Stopwatch};
 use crate::offscreen::OffscreenRenderer;
 use crate::physics::{Backend, Command, Opened, Physics, default_pace};
 use crate::picture::Picture;
@@ -218,6 +219,17 @@ impl Window {
         self.open.as_ref()?.computed_on.as_deref()
     }
 
+    /// The length of the ruler in the picture, m; none where it is put away.
+    pub fn ruler_length(&self) -> Option<f64> {
+        self.open.as_ref()?.instruments.ruler.as_ref()?.length()
+    }
+
+    /// The time that the stopwatch shows, s; none where it is put away.
+    pub fn stopwatch_time(&self) -> Option<f64> {
+        let open = self.open.as_ref()?;
+        Some(open.instruments.stopwatch.as_ref()?.time(open.snapshot.as_ref()?))
+    }
+
     /// The last error, if any.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
@@ -281,9 +293,11 @@ impl Window {
             },
         };
         let before = self.open.take();
-        let mut times = self.speed;
+        let (mut times, mut instruments) = (self.speed, Instruments::default());
         if let Some(before) = before.filter(|before| before.source.name == source.name) {
-            // A scene restarted with changes keeps its camera.
+            // A scene restarted with changes keeps its camera and its ruler; the stopwatch begins again.
+            instruments = before.instruments;
+            instruments.stopwatch = instruments.stopwatch.map(|_| Stopwatch::default());
             (picture.camera_offset, picture.quality) = (before.picture.camera_offset, before.picture.quality);
             times = before.times;
         }
@@ -298,6 +312,7 @@ impl Window {
             spot: None,
             probed: None,
             filming: false,
+            instruments,
             gas_controls: GasControls::default(),
             source,
             recorded,

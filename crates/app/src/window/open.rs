@@ -3,6 +3,7 @@
 use super::Source;
 use crate::gas_controls::GasControls;
 use crate::icons::{self, Icon};
+use crate::instruments::Instruments;
 use crate::overlay::Over;
 use crate::parameters::Parameters;
 use crate::pick::Picked;
@@ -11,8 +12,10 @@ use crate::plots::Plots;
 use crate::snapshot::Snapshot;
 use crate::spot::Spot;
 use corpuscle::model::Frame;
+use corpuscle::models;
 use corpuscle::scene::Scene;
 use corpuscle::terrain::Terrain;
+use corpuscle_drawing::text;
 use egui::{Pos2, Rect, Ui};
 use std::sync::Arc;
 
@@ -36,6 +39,8 @@ pub(super) struct Open {
     pub(super) spot: Option<Spot>,
     /// The position at which the physics samples the water.
     pub(super) probed: Option<[f64; 2]>,
+    /// Ruler and stopwatch.
+    pub(super) instruments: Instruments,
     /// State of the controls of a gas.
     pub(super) gas_controls: GasControls,
     /// The backend, and why it was chosen.
@@ -81,6 +86,51 @@ impl Open {
         }
         if !self.picture.is_sketch() {
             self.quality(ui);
+        }
+    }
+
+    /// Ruler and stopwatch, for the toolbar.
+    pub(super) fn toolbar_instruments(&mut self, ui: &mut Ui) {
+        if icons::toggle(ui, Icon::Ruler, "Ruler", "M", self.instruments.ruler.is_some()).clicked() {
+            self.instruments.toggle_ruler();
+        }
+        if icons::toggle(ui, Icon::Stopwatch, "Stopwatch", "W", self.instruments.stopwatch.is_some()).clicked() {
+            self.instruments.toggle_stopwatch();
+        }
+    }
+
+    /// True where quantities have SI units.
+    pub(super) fn has_units(&self) -> bool {
+        models::of(&self.scene).is_ok_and(|kind| kind.has_si_units(&self.scene))
+    }
+
+    /// Shows the ruler in the picture that fills a rectangle. Its ends lie on the ground of a flood, elsewhere in a plane that faces the camera.
+    pub(super) fn measure(&mut self, ui: &Ui, rect: Rect) {
+        let unit = if self.has_units() { "m" } else { "" };
+        let (Some(ruler), Some(shown)) = (&mut self.instruments.ruler, self.picture.shown()) else { return };
+        let painter = ui.painter_at(rect);
+        let over = Over { shown, rect, painter: &painter, dark: ui.visuals().dark_mode };
+        let below = |at: Pos2| match &self.terrain {
+            // Beside the terrain the nearest of its places is taken.
+            Some(terrain) => Spot::at(shown, rect, terrain, at)
+                .or_else(|| Some(Spot::within(terrain, self.picture.below(rect, at)?)))
+                .map(|spot| spot.place()),
+            None => self.picture.below(rect, at),
+        };
+        ruler.ui(ui, &over, &below, unit);
+    }
+
+    /// Shows the card of the stopwatch, where it is taken.
+    pub(super) fn stopwatch_card(&mut self, ui: &mut Ui) {
+        let has_units = self.has_units();
+        let words = |time: f64| match has_units {
+            true if time == 0.0 || time >= 0.1 => format!("{} s", text::number(time)),
+            true => text::any_time(time),
+            false => text::number(time),
+        };
+        let (Some(watch), Some(snapshot)) = (&mut self.instruments.stopwatch, &self.snapshot) else { return };
+        if watch.card(ui, snapshot, &words) {
+            self.instruments.stopwatch = None;
         }
     }
 

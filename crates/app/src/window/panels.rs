@@ -6,7 +6,6 @@ use crate::icons::{self, Icon};
 use crate::physics::{Change, Command};
 use crate::spot::SpotAction;
 use crate::transport::{Pressed, Transport};
-use corpuscle::models;
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui, vec2};
 
 impl Window {
@@ -74,6 +73,7 @@ impl Window {
             let response = open.picture.ui(ui, &snapshot, open.playing, &self.offscreen);
             self.physics.see(open.picture.view_state());
             open.pick(ui, &response, &snapshot);
+            open.measure(ui, response.rect);
             let spot = open.spot.map(|spot| spot.at_model());
             // A key, or its card, may have closed it.
             if spot != open.probed {
@@ -102,15 +102,14 @@ impl Window {
         }
         if let Some(open) = &mut self.open
             && let (Some(picked), Some(snapshot)) = (&open.picked, &open.snapshot)
-            && picked.card(
-                &mut over,
-                &snapshot.known,
-                models::of(&open.scene).is_ok_and(|kind| kind.has_si_units(&open.scene)),
-            )
+            && picked.card(&mut over, &snapshot.known, open.has_units())
         {
             open.picked = None;
         }
         self.spot_card(&mut over);
+        if let Some(open) = &mut self.open {
+            open.stopwatch_card(&mut over);
+        }
     }
 
     /// The card of the picked position on the terrain.
@@ -149,6 +148,7 @@ impl Window {
             let Some(open) = &mut self.open else { return };
             if !is_narrow {
                 open.toolbar_camera(ui);
+                open.toolbar_instruments(ui);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let title = egui::Label::new(RichText::new(&open.scene.title).heading()).truncate();

@@ -193,6 +193,32 @@ impl Stage {
         self.harness.step();
     }
 
+    /// Drags what is called so by some points.
+    pub fn drag(&mut self, name: &str, by: [f32; 2]) {
+        let from = self.harness.get_by_label(name).rect().center();
+        self.harness.hover_at(from);
+        self.harness.step();
+        self.harness.drag_at(from);
+        self.harness.step();
+        for part in 1..=4 {
+            self.harness.hover_at(from + 0.25 * part as f32 * vec2(by[0], by[1]));
+            self.harness.step();
+        }
+        self.harness.drop_at(from + vec2(by[0], by[1]));
+        self.harness.step();
+        self.harness.step();
+    }
+
+    /// Zooms the picture by a factor, the pointer at its middle.
+    pub fn zoom(&mut self, times: f32) {
+        let middle = self.harness.get_by_label("Picture of the scene").rect().center();
+        self.harness.hover_at(middle);
+        self.harness.step();
+        self.harness.event(egui::Event::Zoom(times));
+        self.harness.step();
+        self.run(Duration::from_millis(50));
+    }
+
     /// Touches the bar of a finished run's time, in parts of its length.
     pub fn touch_bar(&mut self, part: f32) {
         let bar = |label: String| label.starts_with("Time ");

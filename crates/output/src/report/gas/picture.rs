@@ -1,6 +1,6 @@
 //! The picture of a gas from its model.
 
-use crate::picture::{Across, Balls, Colour, Disc, Key, Side, from_hex, number, of_part};
+use crate::picture::{Across, Balls, Colour, Disc, Key, Side, from_hex, of_part, short_number};
 use corpuscle_model::{Container, Frame, Model, ParticleSet};
 use corpuscle_scene::{Axis, Gas, Units, Wall, colour_of_kind, padded};
 use std::collections::BTreeSet;
@@ -67,7 +67,7 @@ pub fn gas_key(gas: &Gas, frame: &Frame) -> Key {
         return Key::Speed { most: fastest(gas, frame), unit };
     }
     let kind = |(kind, set): (usize, &ParticleSet)| {
-        let count = if set.len() == 1 { String::new() } else { format!(": {}", number(set.len() as f64)) };
+        let count = if set.len() == 1 { String::new() } else { format!(": {}", short_number(set.len() as f64)) };
         (format!("{}{count}", set.name), colour_of(gas, kind, &set.name))
     };
     Key::Kinds(frame.sets.iter().enumerate().map(kind).collect())
