@@ -1,10 +1,11 @@
 //! A disk that is full: at the start, and in the middle of a run.
 #![cfg(target_os = "linux")]
 
+mod results;
 mod tool;
 
+use results::results;
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 use tool::{LAKE, Place};
 
@@ -35,22 +36,6 @@ fn binary() -> &'static str {
 
 fn text(place: &Place, name: &str) -> String {
     String::from_utf8(place.read(name)).unwrap()
-}
-
-/// Files of a run that are the same whenever it is run.
-fn lasting(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut files = Vec::new();
-    for sub in ["", "frames", "maps"] {
-        for entry in fs::read_dir(folder.join(sub)).unwrap() {
-            let path = entry.unwrap().path();
-            let name = path.strip_prefix(folder).unwrap().display().to_string();
-            if path.is_file() && !["summary.json", "report.html", "log.txt"].contains(&name.as_str()) {
-                files.push((name, fs::read(path).unwrap()));
-            }
-        }
-    }
-    files.sort();
-    files
 }
 
 #[test]
@@ -93,13 +78,13 @@ fn a_disk_that_fills_up_ends_the_run_and_it_goes_on_once_there_is_room() {
     let words = ["cannot", "disk/run/", "No space left", "corpuscle run --resume disk/run"];
     assert!(words.iter().all(|word| told.contains(word)) && !told.contains("panicked"), "{told}");
     // What was written is whole: it is part of what an undisturbed run writes.
-    let whole = lasting(&place.path("whole"));
+    let whole = results(&place.path("whole"));
     let gauges = text(&place, "then/gauges.csv");
     assert!(text(&place, "whole/gauges.csv").starts_with(&gauges) && gauges.ends_with('\n'));
     let frames: Vec<_> =
-        lasting(&place.path("then")).into_iter().filter(|(name, _)| name.starts_with("frames/")).collect();
+        results(&place.path("then")).into_iter().filter(|(name, _)| name.starts_with("frames/")).collect();
     assert!(!frames.is_empty() && frames.iter().all(|frame| whole.contains(frame)));
     assert!(frames.len() < whole.iter().filter(|(name, _)| name.starts_with("frames/")).count());
-    assert!(lasting(&place.path("now")) == whole, "the run that went on differs");
+    assert!(results(&place.path("now")) == whole, "the run that went on differs");
     assert!(place.path("now/report.html").is_file());
 }

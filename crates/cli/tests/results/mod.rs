@@ -21,6 +21,7 @@ pub fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 /// Whether a run has written what another has.
+#[allow(dead_code, reason = "not every test uses it")]
 pub fn compare(found: &[(String, Vec<u8>)], expected: &[(String, Vec<u8>)], when: &str) {
     let names = |files: &[(String, Vec<u8>)]| files.iter().map(|file| file.0.clone()).collect::<Vec<_>>();
     assert_eq!(names(found), names(expected), "{when}");
