@@ -7,6 +7,7 @@ mod tool;
 
 use results::{compare, results};
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use tool::{BALLS, DEW, Ended, LAKE, Place};
@@ -127,8 +128,8 @@ fn assert_no_litter(folder: &Path) {
     }
 }
 
-/// Runs a model with such calls failing in turn, `most` of them spread over all; what is left goes on to the same bytes.
-fn fails_at_each(model: &Model, fault: &Fault, most: usize) {
+/// Runs a model with such calls failing in turn, `most` of them spread over all; what is left goes on to the same bytes. The number of such runs.
+fn fails_at_each(model: &Model, fault: &Fault, most: usize) -> usize {
     let Model { name, .. } = model;
     let Fault { call, error, goes_on, is_harmless } = fault;
     let place = Place::new();
@@ -138,7 +139,7 @@ fn fails_at_each(model: &Model, fault: &Fault, most: usize) {
     let calls =
         calls(&place, call, &model.arguments("counted"), if *call == "read" { "scene.toml" } else { "counted" });
     assert!(!calls.is_empty(), "{name}: {call} is never called");
-    let mut failed = 0;
+    let (mut failed, mut runs) = (0, 0);
     let apart = calls.len().div_ceil(most);
     for number in calls.into_iter().step_by(apart) {
         let when = format!("{name}, {call} {number} fails with {error}");
@@ -173,8 +174,13 @@ fn fails_at_each(model: &Model, fault: &Fault, most: usize) {
         }
         compare(&results(&place.path("run")), &expected, &when);
         fs::remove_dir_all(place.path("run")).unwrap();
+        runs += 1;
     }
     assert!(*is_harmless || failed > 0, "{name}: no failure of {call} was told");
+    println!(
+        "{name}, {call} fails with {error}: {runs} runs, {failed} ended by it, all gone on with to the same bytes"
+    );
+    runs
 }
 
 fn all_fail(most: usize) {
@@ -182,9 +188,8 @@ fn all_fail(most: usize) {
         return;
     }
     for model in &MODELS {
-        for fault in &FAULTS {
-            fails_at_each(model, fault, most);
-        }
+        let runs: usize = FAULTS.iter().map(|fault| fails_at_each(model, fault, most)).sum();
+        println!("{}: {runs} runs in which a call failed", model.name);
     }
 }
 
@@ -197,6 +202,45 @@ fn calls_that_fail_are_told_and_the_run_goes_on_to_the_same_bytes() {
 #[ignore = "takes minutes"]
 fn each_call_that_fails_is_told_and_the_run_goes_on_to_the_same_bytes() {
     all_fail(usize::MAX);
+}
+
+/// A scene and a table that come from pipes, a few bytes in each read.
+#[test]
+fn reads_that_return_little_at_a_time_change_nothing() {
+    let place = Place::new();
+    let table = "time_s,discharge_m3_per_s\n0,0\n0.2,3\n0.4,1\n";
+    let scene = format!(
+        "{LAKE}\n[[flood.inflow]]\nname = \"pipe\"\nat = [5, 5]\ndischarge_m3_per_s = {{ csv = \"table.csv\" }}\n"
+    );
+    let arguments = |folder| ["run", "scene.toml", "--frames=csv", "--set=run.until_s=0.4", "-o", folder];
+    place.write("scene.toml", &scene);
+    place.write("table.csv", table);
+    place.run(&arguments("whole")).expect_status(0);
+    let writers = [("scene.toml", scene.as_str()), ("table.csv", table)].map(|(name, text)| {
+        fs::remove_file(place.path(name)).unwrap();
+        assert!(Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
+        let (path, text) = (place.path(name), text.to_owned());
+        // Once for each time that the file is opened.
+        std::thread::spawn(move || {
+            loop {
+                // Until the test is over and the pipe is gone.
+                let Ok(mut pipe) = fs::OpenOptions::new().write(true).open(&path) else { return };
+                for piece in text.as_bytes().chunks(3) {
+                    // The reader may have read enough.
+                    if pipe.write_all(piece).is_err() {
+                        break;
+                    }
+                    std::thread::sleep(std::time::Duration::from_micros(200));
+                }
+                // The reader meets the end of the file before the pipe is opened again.
+                drop(pipe);
+                std::thread::sleep(std::time::Duration::from_millis(300));
+            }
+        })
+    });
+    place.run(&arguments("pieces")).expect_status(0);
+    compare(&results(&place.path("pieces")), &results(&place.path("whole")), "little at a time");
+    assert!(writers.iter().all(|writer| !writer.is_finished()));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The command line of the fuzz targets.
 
 use clap::{Parser, Subcommand};
+use corpuscle::gpu::Gpu;
 use corpuscle_fuzz::drive::{self, Until, call, file_name, fuzz};
 use corpuscle_fuzz::scenes::{Kind, Trial, scene, shorter, try_scene};
 use corpuscle_fuzz::soak::{growth, soak};
@@ -35,7 +36,7 @@ enum Task {
         /// Scene file
         file: PathBuf,
     },
-    /// Runs random scenes for hours; logs memory, open files and threads
+    /// Runs random scenes for hours, every second round of them on a GPU; logs memory, open files and threads
     #[command(hide = true)]
     Soak {
         /// Time, h
@@ -191,7 +192,9 @@ fn try_file(name: &str, file: &Path) -> Result<bool, String> {
 }
 
 fn run_soak(hours: f64, seed: u64, log: &Path) -> Result<bool, String> {
-    let rows = soak(Duration::from_secs_f64(3600.0 * hours), seed, 100, log).map_err(|error| error.to_string())?;
+    let gpu = Gpu::open().map_err(|error| println!("without a GPU: {error}")).ok();
+    let time = Duration::from_secs_f64(3600.0 * hours);
+    let rows = soak(time, seed, 100, log, gpu.as_ref()).map_err(|error| error.to_string())?;
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Err("too short a time".into()) };
     println!("{} scenes; first row {first:?}; last row {last:?}", last.scenes);
     let growth = growth(&rows);

@@ -114,15 +114,11 @@ impl Mapping {
     pub async fn filled(mut self) -> Result<wgpu::BufferView, GpuError> {
         // Does nothing in a browser, whose answer comes when it is awaited.
         let wait = wgpu::PollType::Wait { submission_index: Some(self.filled.clone()), timeout: None };
-        self.gpu.device.poll(wait).map_err(|error| self.lost(error.to_string()))?;
+        self.gpu.device.poll(wait).map_err(|error| self.gpu.failed(error))?;
         let answer = (&mut self.answer).await;
         self.gpu.check()?;
-        answer.map_err(|error| self.lost(error.to_string()))?.map_err(|error| self.lost(error.to_string()))?;
-        self.buffer.slice(..).get_mapped_range().map_err(|error| self.lost(error.to_string()))
-    }
-
-    fn lost(&self, reason: String) -> GpuError {
-        GpuError::Lost { name: self.gpu.name.clone(), reason }
+        answer.map_err(|error| self.gpu.failed(error))?.map_err(|error| self.gpu.failed(error))?;
+        self.buffer.slice(..).get_mapped_range().map_err(|error| self.gpu.failed(error))
     }
 }
 

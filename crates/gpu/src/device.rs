@@ -3,6 +3,7 @@
 use crate::GpuError;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Duration;
 
 /// What kind of device pictures are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,27 +29,65 @@ pub struct Gpu {
     compiled: Compiled,
 }
 
-/// The compute pipelines of a device by the text of their shaders, so that no shader is compiled twice: a second model on the same device has them.
+/// The pipelines of a device by what they are compiled from, so that nothing is compiled twice: a second model or picture on the same device has them.
 #[derive(Debug, Clone, Default)]
-struct Compiled(Arc<Mutex<HashMap<String, wgpu::ComputePipeline>>>);
+struct Compiled {
+    computing: Once<wgpu::ComputePipeline>,
+    drawing: Once<wgpu::RenderPipeline>,
+}
 
-/// The first error on a device, which reports errors asynchronously.
+/// What is made once for each text.
+#[derive(Debug, Clone)]
+struct Once<T>(Arc<Mutex<HashMap<String, T>>>);
+
+impl<T> Default for Once<T> {
+    fn default() -> Self {
+        Self(Arc::default())
+    }
+}
+
+impl<T: Clone> Once<T> {
+    fn get(&self, text: String, make: impl FnOnce(&str) -> T) -> T {
+        let mut made = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = made.get(&text).cloned();
+        known.unwrap_or_else(|| {
+            let new = make(&text);
+            made.insert(text, new.clone());
+            new
+        })
+    }
+}
+
+/// What went wrong on a device, which reports errors asynchronously.
 #[derive(Debug, Clone, Default)]
-struct Faults(Arc<OnceLock<String>>);
+struct Faults(Arc<Faulty>);
+
+#[derive(Debug, Default)]
+struct Faulty {
+    /// Why the device was lost.
+    loss: OnceLock<String>,
+    /// The first call that failed. What goes wrong later follows from it.
+    call: OnceLock<String>,
+}
 
 impl Faults {
     /// Listens to a device.
     fn of(device: &wgpu::Device) -> Self {
         let faults = Self::default();
         let (of_calls, of_loss) = (faults.clone(), faults.clone());
-        device.on_uncaptured_error(Arc::new(move |error| of_calls.note(error.to_string())));
-        device.set_device_lost_callback(move |_, reason| of_loss.note(format!("it was lost ({reason})")));
+        device.on_uncaptured_error(Arc::new(move |error| _ = of_calls.0.call.set(error.to_string())));
+        device.set_device_lost_callback(move |_, reason| _ = of_loss.0.loss.set(format!("it was lost ({reason})")));
         faults
     }
 
-    fn note(&self, what: String) {
-        // What goes wrong later follows from it.
-        let _ = self.0.set(what);
+    /// What went wrong, if anything: calls on a device that was lost fail too, and may be heard of before the loss.
+    fn first(&self, device: &wgpu::Device) -> Option<String> {
+        let call = self.0.call.get();
+        if call.is_some() {
+            // A loss is told once what was under way has ended.
+            _ = device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(1)) });
+        }
+        self.0.loss.get().or(call).cloned()
     }
 }
 
@@ -123,25 +162,32 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Lost`] with what went wrong first.
     pub fn check(&self) -> Result<(), GpuError> {
-        match self.faults.0.get() {
+        match self.faults.first(&self.device) {
             None => Ok(()),
-            Some(reason) => Err(GpuError::Lost { name: self.name.clone(), reason: reason.clone() }),
+            Some(reason) => Err(GpuError::Lost { name: self.name.clone(), reason }),
         }
     }
 
-    /// The compute pipeline of a shader's text; it is compiled where this device has not compiled it yet.
-    pub(crate) fn pipeline(
+    /// The error of a call that failed: why the device was lost, where that is the reason.
+    pub(crate) fn failed(&self, what: impl std::fmt::Display) -> GpuError {
+        _ = self.faults.0.call.set(what.to_string());
+        let reason = self.faults.first(&self.device).unwrap_or_default();
+        GpuError::Lost { name: self.name.clone(), reason }
+    }
+
+    /// The compute pipeline that is compiled from a text; it is compiled where this device has not compiled it yet.
+    pub fn computing(
         &self,
         text: String,
         compile: impl FnOnce(&str) -> wgpu::ComputePipeline,
     ) -> wgpu::ComputePipeline {
-        let mut compiled = self.compiled.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let pipeline = compiled.get(&text).cloned();
-        pipeline.unwrap_or_else(|| {
-            let pipeline = compile(&text);
-            compiled.insert(text, pipeline.clone());
-            pipeline
-        })
+        self.compiled.computing.get(text, compile)
+    }
+
+    /// The pipeline that draws, compiled from what a text says: the shader's own, and all else that it depends on. It is compiled where this device
+    /// has not compiled it yet.
+    pub fn drawing(&self, text: String, compile: impl FnOnce(&str) -> wgpu::RenderPipeline) -> wgpu::RenderPipeline {
+        self.compiled.drawing.get(text, compile)
     }
 
     /// Largest memory that a shader can see as one piece, bytes.
@@ -219,7 +265,7 @@ mod tests {
         let mut count = 0;
         let texts = ["one", "other", "one"].map(|name| format!("@compute @workgroup_size(1) fn {name}() {{}}"));
         for text in texts {
-            gpu.clone().pipeline(text, |text| {
+            gpu.clone().computing(text, |text| {
                 count += 1;
                 compile(&gpu, text)
             });

@@ -35,7 +35,7 @@ impl<B: Buffers> Kernel<B> {
     pub fn new(gpu: &Gpu, name: &'static str, text: &str, library: ShaderLibrary<'_>) -> Self {
         let complete = B::declaration().complete(name, text, library);
         let (text, used) = complete.expect("a test completes every shader");
-        let pipeline = gpu.pipeline(for_device(gpu, text), |text| {
+        let pipeline = gpu.computing(for_device(gpu, text), |text| {
             let source = wgpu::ShaderSource::Wgsl(text.into());
             let module = module(gpu, wgpu::ShaderModuleDescriptor { label: Some(name), source });
             gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {

@@ -1,5 +1,6 @@
 //! Pipelines that draw into a frame.
 
+use crate::shaders::Shader;
 use crate::{COLOUR_FORMAT, DEPTH_FORMAT};
 use corpuscle_gpu::{Gpu, GroupLayout, wgpu};
 
@@ -8,7 +9,7 @@ pub(crate) struct PipelineDescriptor<'a> {
     /// Its label.
     pub label: &'a str,
     /// The shader.
-    pub module: &'a wgpu::ShaderModule,
+    pub shader: &'a Shader<'a>,
     /// Layouts of its groups; the first is that of the view.
     pub groups: &'a [&'a GroupLayout],
     /// Layouts of its vertex buffers.
@@ -55,6 +56,7 @@ impl PipelineDescriptor<'_> {
         self.build(gpu, "fragment", Some(target), None)
     }
 
+    /// The pipeline; a device compiles the same one once. The layouts of its groups follow from its shader.
     fn build(
         &self,
         gpu: &Gpu,
@@ -62,6 +64,20 @@ impl PipelineDescriptor<'_> {
         colour: Option<wgpu::ColorTargetState>,
         depth: Option<wgpu::CompareFunction>,
     ) -> wgpu::RenderPipeline {
+        let Self { label, topology, buffers, .. } = self;
+        let groups = self.groups.len();
+        let rest = format!("{label} {groups} {fragment} {colour:?} {depth:?} {topology:?} {buffers:?}");
+        gpu.drawing(format!("{rest} {}", self.shader.text), |_| self.compile(gpu, fragment, colour, depth))
+    }
+
+    fn compile(
+        &self,
+        gpu: &Gpu,
+        fragment: &str,
+        colour: Option<wgpu::ColorTargetState>,
+        depth: Option<wgpu::CompareFunction>,
+    ) -> wgpu::RenderPipeline {
+        let module = self.shader.module(gpu);
         let groups: Vec<_> = self.groups.iter().map(|group| Some(group.layout())).collect();
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(self.label),
@@ -74,7 +90,7 @@ impl PipelineDescriptor<'_> {
             label: Some(self.label),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
-                module: self.module,
+                module: &module,
                 entry_point: Some("vertex"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &buffers,
@@ -89,7 +105,7 @@ impl PipelineDescriptor<'_> {
             }),
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
-                module: self.module,
+                module: &module,
                 entry_point: Some(fragment),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 targets: &targets,

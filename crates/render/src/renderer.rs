@@ -1,9 +1,10 @@
 //! The renderer: draws pictures pass by pass.
 
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::static_layer::{StaticLayer, StaticUse};
 use crate::tone::Tone;
-use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
+use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through, View};
 use corpuscle_gpu::{Gpu, GroupLayout, Image, read_rgba8, read_rgba8_later, wgpu};
 use std::sync::PoisonError;
 
@@ -22,7 +23,7 @@ impl Renderer {
         let view_layout = View::layout(gpu);
         let backdrop = PipelineDescriptor {
             label: "backdrop",
-            module: &shaders::module(gpu, "backdrop", include_str!("sky/backdrop.wgsl")),
+            shader: &Shader::new("backdrop", include_str!("sky/backdrop.wgsl")),
             groups: &[&view_layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,

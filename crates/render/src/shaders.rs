@@ -31,15 +31,29 @@ fn joined(name: &str, text: &str) -> Result<String, ImportError> {
     join(name, text, &library)
 }
 
-/// A shader of this crate. `text` is the file of the same name.
-pub(crate) fn module(gpu: &Gpu, name: &str, text: &str) -> wgpu::ShaderModule {
-    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(name),
-        source: wgpu::ShaderSource::Wgsl(joined(name, text).expect("a test joins every shader").into()),
-    })
+/// A shader of this crate, joined from its pieces.
+pub(crate) struct Shader<'a> {
+    name: &'a str,
+    /// The whole of it.
+    pub text: String,
 }
 
-/// The layout of a group that shaders of this crate share; their names and texts are as for [`module`].
+impl<'a> Shader<'a> {
+    /// The shader of a name; `text` is the file of the same name.
+    pub(crate) fn new(name: &'a str, text: &str) -> Self {
+        Self { name, text: joined(name, text).expect("a test joins every shader") }
+    }
+
+    /// Its module on a device.
+    pub(crate) fn module(&self, gpu: &Gpu) -> wgpu::ShaderModule {
+        gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(self.name),
+            source: wgpu::ShaderSource::Wgsl(self.text.as_str().into()),
+        })
+    }
+}
+
+/// The layout of a group that shaders of this crate share; their names and texts are as for [`Shader::new`].
 pub(crate) fn layout(gpu: &Gpu, label: &'static str, group: u32, shaders: &[(&str, &str)]) -> GroupLayout {
     let whole = |(name, text): &(&str, &str)| joined(name, text).expect("a test joins every shader");
     let texts: Vec<String> = shaders.iter().map(whole).collect();

@@ -189,7 +189,10 @@ impl GpuSolver {
         let write = |buffer: &wgpu::Buffer, bytes: &[u8]| self.batches.gpu().queue.write_buffer(buffer, 0, bytes);
         write(&self.tasks.memory.particles, bytemuck::cast_slice(&air));
         write(&self.tasks.memory.solids, bytemuck::cast_slice(&solids));
-        write(&self.tasks.memory.bodies, bytemuck::cast_slice(&self.bodies));
+        // A row of the gauges may be due before the first step.
+        let flow = |(body, &flow): (&shared::Body, &f64)| shared::Body { flow: flow as f32, ..*body };
+        let bodies: Vec<shared::Body> = self.bodies.iter().zip(&state.heat_flow).map(flow).collect();
+        write(&self.tasks.memory.bodies, bytemuck::cast_slice(&bodies));
         let row = |&row: &[f64; 2]| shared::Row::new(row, state.time);
         let rows: Vec<shared::Row> = self.rows.iter().map(row).collect();
         write(&self.tasks.memory.rows, bytemuck::cast_slice(&rows));

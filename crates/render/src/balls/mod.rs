@@ -5,6 +5,7 @@ mod seen;
 
 use crate::buffer::{storage, uniform};
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::shared::{BallInstance, BallUniforms};
 use crate::{Before, Camera, ColourTable, Drawable, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, GroupLayout, Kernel, wgpu};
@@ -92,11 +93,11 @@ impl BallPainter {
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
         let layout = shaders::layout(gpu, "balls", 1, &SHADERS);
-        let module = |(name, text): (&str, &str)| shaders::module(gpu, name, text);
+        let shader = |(name, text): (&'static str, &str)| Shader::new(name, text);
         let [balls, matt, discs, ..] = SHADERS;
         let descriptor = PipelineDescriptor {
             label: "balls",
-            module: &module(balls),
+            shader: &shader(balls),
             groups: &[renderer.view_layout(), &layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -105,8 +106,8 @@ impl BallPainter {
         Self {
             opaque: descriptor.opaque(gpu),
             cast: descriptor.cast(gpu, "throw_shadow"),
-            matt: PipelineDescriptor { module: &module(matt), ..descriptor }.opaque(gpu),
-            discs: PipelineDescriptor { module: &module(discs), ..descriptor }.opaque(gpu),
+            matt: PipelineDescriptor { shader: &shader(matt), ..descriptor }.opaque(gpu),
+            discs: PipelineDescriptor { shader: &shader(discs), ..descriptor }.opaque(gpu),
             layout,
             seen,
             maker: OnceLock::new(),

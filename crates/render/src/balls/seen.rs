@@ -1,6 +1,7 @@
 //! Deferred shading of many balls: first the number of the nearest ball is drawn for each sample, then visible samples are shaded once.
 
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::{Before, DEPTH_FORMAT, Renderer, shaders};
 use corpuscle_gpu::{GroupLayout, texture_2d, wgpu};
 
@@ -28,7 +29,7 @@ impl SeenPainter {
         let layout = shaders::layout(gpu, "balls seen", 2, &[seen]);
         let find = PipelineDescriptor {
             label: "balls numbered",
-            module: &shaders::module(gpu, numbered.0, numbered.1),
+            shader: &Shader::new(numbered.0, numbered.1),
             groups: &[renderer.view_layout(), balls],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -36,7 +37,7 @@ impl SeenPainter {
         .nearest(gpu, NUMBERS);
         let shade = PipelineDescriptor {
             label: "balls seen",
-            module: &shaders::module(gpu, seen.0, seen.1),
+            shader: &Shader::new(seen.0, seen.1),
             groups: &[renderer.view_layout(), balls, &layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,

@@ -1,6 +1,7 @@
 //! Drops too small to be seen one by one: fog on a surface.
 
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::{COLOUR_FORMAT, Renderer, Through, shaders};
 use corpuscle_gpu::{GroupLayout, texture_2d, wgpu};
 
@@ -24,19 +25,19 @@ impl Fog {
         let composing = ("fog_compose", include_str!("fog_compose.wgsl"));
         let depth_layout = shaders::layout(gpu, "fog's depth", 2, &[fog]);
         let compose_layout = shaders::layout(gpu, "fog", 1, &[composing]);
-        let module = shaders::module(gpu, fog.0, fog.1);
+        let shader = Shader::new(fog.0, fog.1);
         let cover = PipelineDescriptor {
             label: "fog",
-            module: &module,
+            shader: &shader,
             groups: &[renderer.view_layout(), caps_layout, &depth_layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
         }
         .added(gpu, COVERED);
-        let module = shaders::module(gpu, composing.0, composing.1);
+        let shader = Shader::new(composing.0, composing.1);
         let compose = PipelineDescriptor {
             label: "fog compose",
-            module: &module,
+            shader: &shader,
             groups: &[renderer.view_layout(), &compose_layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,

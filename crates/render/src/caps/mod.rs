@@ -5,6 +5,7 @@ mod neighbours;
 
 use crate::buffer::{storage, uniform};
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::shared::{CapInstance, CapUniforms};
 use crate::solids::Behind;
 use crate::{Drawable, Renderer, Stage, Through, shaders};
@@ -65,7 +66,7 @@ impl CapPainter {
         let (behind, layout) = (Behind::new(gpu, drops), shaders::layout(gpu, "caps", 1, &SHADERS));
         let pipeline = PipelineDescriptor {
             label: "caps",
-            module: &shaders::module(gpu, drops.0, drops.1),
+            shader: &Shader::new(drops.0, drops.1),
             groups: &[renderer.view_layout(), &layout, &behind.layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,

@@ -2,6 +2,7 @@
 
 use crate::buffer::uniform;
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::{Camera, Drawable, Renderer, Stage, shaders, shared, static_layer};
 use corpuscle_gpu::{Gpu, wgpu};
 
@@ -27,7 +28,7 @@ impl Floor {
         let layout = shaders::layout(gpu, "floor", 1, &[shader]);
         let descriptor = PipelineDescriptor {
             label: "floor",
-            module: &shaders::module(gpu, shader.0, shader.1),
+            shader: &Shader::new(shader.0, shader.1),
             groups: &[renderer.view_layout(), &layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,

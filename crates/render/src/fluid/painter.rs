@@ -3,6 +3,7 @@
 use super::layers::{DISTANCE, THICKNESS};
 use super::{Fluid, FluidStyle};
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::shared::{DropletInstance, buffer_layout};
 use crate::{Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, GroupLayout, SharedStruct, wgpu};
@@ -59,7 +60,7 @@ impl FluidPainter {
             shading: filter(("fluid_shade", include_str!("fluid_shade.wgsl")), "main"),
             composing: PipelineDescriptor {
                 label: "composing",
-                module: &shaders::module(gpu, composing.0, composing.1),
+                shader: &Shader::new(composing.0, composing.1),
                 groups: &[view, &composed],
                 buffers: &[],
                 topology: wgpu::PrimitiveTopology::TriangleList,
@@ -85,18 +86,21 @@ impl FluidPainter {
 impl Filter {
     fn new(gpu: &Gpu, view: &GroupLayout, shader: (&'static str, &str), entry: &str) -> Self {
         let layout = shaders::layout(gpu, shader.0, 1, &[shader]);
-        let both = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(shader.0),
-            bind_group_layouts: &[Some(view.layout()), Some(layout.layout())],
-            immediate_size: 0,
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(shader.0),
-            layout: Some(&both),
-            module: &shaders::module(gpu, shader.0, shader.1),
-            entry_point: Some(entry),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
+        let whole = Shader::new(shader.0, shader.1);
+        let pipeline = gpu.computing(format!("{entry} of {}", whole.text), |_| {
+            let both = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(shader.0),
+                bind_group_layouts: &[Some(view.layout()), Some(layout.layout())],
+                immediate_size: 0,
+            });
+            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(shader.0),
+                layout: Some(&both),
+                module: &whole.module(gpu),
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            })
         });
         Self { pipeline, layout }
     }
@@ -112,13 +116,13 @@ fn sprites(gpu: &Gpu, view: &GroupLayout, settings: &GroupLayout) -> [wgpu::Rend
     let attributes = layout.vertex_attributes();
     let buffers = [buffer_layout(&layout, wgpu::VertexStepMode::Instance, &attributes)];
     let groups = [view, settings];
-    let descriptor = |label, module| PipelineDescriptor {
+    let descriptor = |label, shader| PipelineDescriptor {
         label,
-        module,
+        shader,
         groups: &groups,
         buffers: &buffers,
         topology: wgpu::PrimitiveTopology::TriangleStrip,
     };
-    let [nearest, added] = SPRITES.map(|(name, text)| shaders::module(gpu, name, text));
+    let [nearest, added] = SPRITES.map(|(name, text)| Shader::new(name, text));
     [descriptor("depth", &nearest).nearest(gpu, DISTANCE), descriptor("thickness", &added).added(gpu, THICKNESS)]
 }

@@ -3,8 +3,9 @@
 use super::{DeviceWater, Droplet};
 use crate::buffer::instances;
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::shared::{Vertex, buffer_layout};
-use crate::{Drawable, HeightField, Renderer, Stage, shaders};
+use crate::{Drawable, HeightField, Renderer, Stage};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 use glam::{DVec2, DVec3};
 
@@ -37,7 +38,7 @@ impl WaterSides {
         let attributes = layout.vertex_attributes();
         let descriptor = PipelineDescriptor {
             label: "sides of water",
-            module: &shaders::module(gpu, "sides", include_str!("sides.wgsl")),
+            shader: &Shader::new("sides", include_str!("sides.wgsl")),
             groups: &[renderer.view_layout()],
             buffers: &[buffer_layout(&layout, wgpu::VertexStepMode::Vertex, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleList,

@@ -3,6 +3,7 @@
 //! A toolkit's own shader for images filters in two ways and takes one; software in place of a GPU computes both, and took ten
 //! times as long. A picture that was drawn quickly comes from its linear light without a finished picture in between.
 
+use crate::shaders::Shader;
 use crate::{Target, shaders};
 use corpuscle_gpu::{Gpu, GpuError, GroupLayout, Image, texture_2d, wgpu};
 
@@ -27,8 +28,8 @@ impl InlayPainter {
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         let shader = ("inlay", include_str!("inlay.wgsl"));
         let layout = shaders::layout(gpu, "inlay", 0, &[shader]);
-        let module = shaders::module(gpu, shader.0, shader.1);
-        let build = |entry, pressed| pipeline(gpu, &module, &layout, format, entry, pressed);
+        let whole = Shader::new(shader.0, shader.1);
+        let build = |entry, pressed| pipeline(gpu, &whole, &layout, format, entry, pressed);
         Self {
             finished: build("fragment_finished", false),
             light: build("fragment_light", false),
@@ -78,39 +79,43 @@ impl Inlay {
     }
 }
 
+/// A device compiles the same one once.
 fn pipeline(
     gpu: &Gpu,
-    module: &wgpu::ShaderModule,
+    shader: &Shader<'_>,
     layout: &GroupLayout,
     format: wgpu::TextureFormat,
     entry: &str,
     pressed: bool,
 ) -> wgpu::RenderPipeline {
-    let constants = [("pressed", f64::from(u8::from(pressed))), ("linear", f64::from(u8::from(format.is_srgb())))];
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("inlay"),
-        bind_group_layouts: &[Some(layout.layout())],
-        immediate_size: 0,
-    });
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("inlay"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(entry),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            targets: &[Some(format.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
+    gpu.drawing(format!("{entry} {format:?} {pressed} {}", shader.text), |_| {
+        let constants = [("pressed", f64::from(u8::from(pressed))), ("linear", f64::from(u8::from(format.is_srgb())))];
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("inlay"),
+            bind_group_layouts: &[Some(layout.layout())],
+            immediate_size: 0,
+        });
+        let module = shader.module(gpu);
+        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("inlay"),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+                targets: &[Some(format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
     })
 }

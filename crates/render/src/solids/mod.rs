@@ -5,6 +5,7 @@ mod mesh;
 use crate::buffer::{instances, uniform};
 use crate::colour::linear;
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::shared::{SolidUniforms, Vertex, buffer_layout};
 use crate::{Drawable, Renderer, Stage, Through, shaders, static_layer};
 use corpuscle_gpu::{Gpu, GroupLayout, SharedStruct, wgpu};
@@ -93,7 +94,7 @@ impl Solid {
         let groups = [renderer.view_layout(), &layout, &behind.layout];
         let descriptor = PipelineDescriptor {
             label: shader.0,
-            module: &shaders::module(gpu, shader.0, shader.1),
+            shader: &Shader::new(shader.0, shader.1),
             groups: if is_glass { &groups } else { &groups[..2] },
             buffers: &buffers,
             topology: wgpu::PrimitiveTopology::TriangleList,

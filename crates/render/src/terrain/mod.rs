@@ -11,6 +11,7 @@ pub(crate) use tiles::QUADS as QUADS_OF_TILE;
 
 use crate::buffer::{indices, instances, uniform};
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::shared::Ground;
 use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders, static_layer};
 use corpuscle_gpu::{Gpu, GroupLayout, Image, texture_2d, wgpu};
@@ -61,7 +62,7 @@ impl Terrain {
         let attributes = wgpu::vertex_attr_array![0 => Uint32x4];
         let descriptor = PipelineDescriptor {
             label: "terrain",
-            module: &shaders::module(gpu, shader.0, shader.1),
+            shader: &Shader::new(shader.0, shader.1),
             groups: &[renderer.view_layout(), &layout],
             buffers: &[wgpu::VertexBufferLayout {
                 array_stride: 16,

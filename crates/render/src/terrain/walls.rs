@@ -4,8 +4,9 @@ use super::HeightField;
 use super::field::Edge;
 use crate::buffer::instances;
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::shared::{Vertex, buffer_layout};
-use crate::{Renderer, Stage, shaders};
+use crate::{Renderer, Stage};
 use corpuscle_gpu::{SharedStruct, wgpu};
 
 /// The upright sides: at the border, and round what has no heights.
@@ -25,7 +26,7 @@ impl Walls {
         let attributes = layout.vertex_attributes();
         let descriptor = PipelineDescriptor {
             label: "sides of the ground",
-            module: &shaders::module(gpu, "walls", include_str!("walls.wgsl")),
+            shader: &Shader::new("walls", include_str!("walls.wgsl")),
             groups: &[renderer.view_layout()],
             buffers: &[buffer_layout(&layout, wgpu::VertexStepMode::Vertex, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleList,

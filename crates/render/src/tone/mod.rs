@@ -2,6 +2,7 @@
 
 use crate::buffer::uniform;
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::shared::Tone as Settings;
 use crate::target::PICTURE_FORMAT;
 use crate::{Target, shaders};
@@ -20,7 +21,7 @@ impl Tone {
         let layout = shaders::layout(gpu, "tone", 0, &[shader]);
         let descriptor = PipelineDescriptor {
             label: "tone",
-            module: &shaders::module(gpu, shader.0, shader.1),
+            shader: &Shader::new(shader.0, shader.1),
             groups: &[&layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,

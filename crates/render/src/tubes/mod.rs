@@ -3,8 +3,9 @@
 use crate::buffer::instances;
 use crate::colour::linear;
 use crate::pipeline::PipelineDescriptor;
+use crate::shaders::Shader;
 use crate::shared::{TubeInstance, buffer_layout};
-use crate::{Drawable, Renderer, Stage, shaders};
+use crate::{Drawable, Renderer, Stage};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 
 /// Style of a tube.
@@ -44,7 +45,7 @@ impl TubePainter {
         let attributes = layout.vertex_attributes();
         let descriptor = PipelineDescriptor {
             label: "tubes",
-            module: &shaders::module(gpu, "tubes", include_str!("tubes.wgsl")),
+            shader: &Shader::new("tubes", include_str!("tubes.wgsl")),
             groups: &[renderer.view_layout()],
             buffers: &[buffer_layout(&layout, wgpu::VertexStepMode::Instance, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleStrip,

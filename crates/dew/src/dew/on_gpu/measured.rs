@@ -43,7 +43,7 @@ impl Dew {
         .await
     }
 
-    async fn row_of_gpu(&mut self) -> Result<Vec<f64>, GpuError> {
+    pub(super) async fn row_of_gpu(&mut self) -> Result<Vec<f64>, GpuError> {
         if self.layers.iter().any(Option::is_some) {
             self.download_from_gpu().await?;
             return Ok(self.gauge_row());

@@ -8,7 +8,7 @@ use crate::room::{Inflow, Room};
 use crate::settings::Settings;
 use crate::solids::Body;
 use crate::testing::block;
-use corpuscle_gpu::require_gpu;
+use corpuscle_gpu::{require_gpu, wait_for};
 use corpuscle_model::{GpuModel, Model};
 use corpuscle_scene::{Scene, builtin};
 use std::path::Path;
@@ -25,6 +25,13 @@ fn duct_round(bodies: Vec<Body>) -> Setup {
 
 fn duct() -> Dew {
     Dew::new(&duct_round(Vec::new()), |_| [WARM, 0.01]).unwrap()
+}
+
+/// The scene dew/pane.
+fn pane() -> Dew {
+    let mut scene = Scene::parse(builtin("dew/pane").unwrap().text, "dew/pane", &[]).unwrap();
+    scene.resolve_defaults();
+    crate::open(scene.dew().unwrap(), 1, Path::new("")).unwrap()
 }
 
 #[test]
@@ -72,11 +79,8 @@ fn more_room_is_taken_amid_a_run() {
 #[test]
 fn a_gpu_lost_amid_a_run_leaves_the_state_of_before() {
     let Some(gpu) = require_gpu("a GPU that is lost") else { return };
-    let mut scene = Scene::parse(builtin("dew/pane").unwrap().text, "dew/pane", &[]).unwrap();
-    scene.resolve_defaults();
-    let open = || crate::open(scene.dew().unwrap(), 1, Path::new("")).unwrap();
     let stop = AtomicBool::new(false);
-    let mut dew = open();
+    let mut dew = pane();
     dew.use_gpu(gpu).unwrap();
     dew.advance_to(0.05, &stop).unwrap();
     let saved = dew.save();
@@ -86,12 +90,27 @@ fn a_gpu_lost_amid_a_run_leaves_the_state_of_before() {
     assert_eq!(dew.gpu_solver.take().unwrap().lost_after, Some(0));
     assert!(dew.save() == saved && dew.time() == 0.05);
     // The run goes on where there is no GPU.
-    let mut other = open();
+    let mut other = pane();
     other.restore(&saved).unwrap();
     for dew in [&mut dew, &mut other] {
         dew.advance_to(0.06, &stop).unwrap();
     }
     assert!(dew.save() == other.save());
+}
+
+/// A row that is due between the state that a run goes on from and its next step.
+#[test]
+fn a_row_before_the_first_step_is_that_of_the_state() {
+    let Some(gpu) = require_gpu("a row of gauges on the GPU") else { return };
+    let mut dew = pane();
+    dew.use_gpu(gpu.clone()).unwrap();
+    dew.advance_to(0.05, &AtomicBool::new(false)).unwrap();
+    let mut other = pane();
+    other.restore(&dew.save()).unwrap();
+    other.use_gpu(gpu).unwrap();
+    let [row, same] = [&mut dew, &mut other].map(|dew| wait_for(dew.row_of_gpu()).unwrap());
+    // As text: columns without a value are no numbers.
+    assert_eq!(format!("{row:?}"), format!("{same:?}"));
 }
 
 /// The duct with a cold block in it, and air that turns.

@@ -285,8 +285,7 @@ impl SphSweFlood {
             if let Some(error) = self.defect_among(&particles, done.time, steps) {
                 return Err(error);
             }
-            self.state.particles = particles;
-            self.download_rest(&done, residual_volume, last_sample).await.map_err(|error| failed(&error))?;
+            self.download_rest(&done, particles, residual_volume, last_sample).await.map_err(|error| failed(&error))?;
         }
         Ok(done)
     }
@@ -300,28 +299,34 @@ impl SphSweFlood {
         Ok(particles)
     }
 
-    /// Downloads the rest of the GPU's state after the steps of `done`: `residual_volume` is that of each source, and the maps were last
-    /// sampled at `last_sample` s.
+    /// Downloads the rest of the GPU's state after the steps of `done`, which led to `particles`: `residual_volume` is that of each source, and the
+    /// maps were last sampled at `last_sample` s.
     async fn download_rest(
         &mut self,
         done: &BatchResult,
+        particles: Vec<Particle>,
         residual_volume: Vec<ExactSum>,
         last_sample: f64,
     ) -> Result<(), GpuError> {
-        if let Some(on_gpu) = &self.on_gpu {
-            let state = &mut self.state;
-            on_gpu.falling(&mut state.falling).await?;
-            if done.map_samples > 0 {
-                on_gpu.download_maps(&mut state.maps).await?;
-                state.maps.set_last(last_sample);
-                state.next_sample += done.map_samples as u64;
-            }
-            let pushed = on_gpu.on_obstacles().await?;
-            (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
-            (self.state.residual_volume, self.state.next_id) = (residual_volume, done.next_id);
-            self.book(done);
-            self.arrange();
+        let Some(on_gpu) = &self.on_gpu else { return Ok(()) };
+        let falling = on_gpu.falling().await?;
+        let mut maps = (done.map_samples > 0).then(|| self.state.maps.clone());
+        if let Some(maps) = &mut maps {
+            on_gpu.download_maps(maps).await?;
+            maps.set_last(last_sample);
         }
+        let pushed = on_gpu.on_obstacles().await?;
+        // All is here: nothing of it is kept where the GPU was lost amid it.
+        let state = &mut self.state;
+        (state.particles, state.falling, state.residual_volume) = (particles, falling, residual_volume);
+        if let Some(maps) = maps {
+            state.maps = maps;
+            state.next_sample += done.map_samples as u64;
+        }
+        (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
+        state.next_id = done.next_id;
+        self.book(done);
+        self.arrange();
         Ok(())
     }
 
@@ -353,7 +358,10 @@ impl SphSweFlood {
         state.particle_steps += progress.particle_steps;
         state.time_step = progress.step;
         state.external = progress.external;
-        state.cell = CELL_OVER_H * progress.mean_h;
+        if progress.mean_h > 0.0 {
+            // Not while all water is in the air.
+            state.cell = CELL_OVER_H * progress.mean_h;
+        }
         state.water.inflow.add(progress.inflow);
         state.water.outflow.add(progress.outflow);
         state.momentum.inflow.add(DENSITY * progress.momentum_gained);

@@ -88,14 +88,12 @@ impl OnGpu {
     }
 
     /// Brings back what still falls.
-    pub async fn falling(&self, falling: &mut Vec<Falling>) -> Result<(), GpuError> {
+    pub async fn falling(&self) -> Result<Vec<Falling>, GpuError> {
         if self.room_in_air == 0 {
-            return Ok(());
+            return Ok(Vec::new());
         }
         let drops: Vec<Drop> = read(self.gpu(), &self.tasks.memory.drops, self.room_in_air).await?;
-        falling.clear();
-        falling.extend(drops.iter().filter(|drop| drop.state == FALLS).map(|drop| self.origin.falling(drop)));
-        Ok(())
+        Ok(drops.iter().filter(|drop| drop.state == FALLS).map(|drop| self.origin.falling(drop)).collect())
     }
 
     /// The sum over time of the force on an obstacle along an axis, of which the GPU has counted `sum` and `knocks` since the upload of the water, m4/s.

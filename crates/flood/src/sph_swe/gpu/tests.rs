@@ -114,3 +114,20 @@ fn a_value_that_is_no_number_does_not_come_back() {
         assert!(pool.ledger().balances.iter().all(|balance| balance.now.is_finite()), "{text}");
     }
 }
+
+/// All water is in the air still: it has no smoothing length.
+#[test]
+fn a_state_of_falling_water_goes_on() {
+    let Some(gpu) = require_gpu("falling water on the GPU") else { return };
+    let block = "water = [{ block = { from = [2, 2], to = [8, 8], height_m = 20, layers = 2 } }]";
+    let pool: Vec<_> = POOL.lines().map(|line| if line.starts_with("water") { block } else { line }).collect();
+    let text = pool.join("\n");
+    let mut before = opened(&text);
+    before.use_gpu(gpu).unwrap();
+    before.advance_to(0.5, &AtomicBool::new(false)).unwrap();
+    assert!(before.state.particles.is_empty() && !before.state.falling.is_empty());
+    let mut after = opened(&text);
+    after.restore(&before.save()).unwrap();
+    after.advance_to(4.0, &AtomicBool::new(false)).unwrap();
+    assert!(after.state.falling.is_empty());
+}
