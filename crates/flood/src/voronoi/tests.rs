@@ -4,11 +4,17 @@ use super::boundaries::Now;
 use super::friction::Slowing;
 use super::mesh::{Ground, Layout, Mesh, SOLID};
 use super::solver::{BorderFlux, Solver};
-use super::water::Column;
+use super::water::{Column, Water};
+use crate::VoronoiFlood;
 use crate::friction::Law;
-use corpuscle_terrain::Bounds;
+use corpuscle_model::Model;
+use corpuscle_scene::Scene;
+use corpuscle_terrain::{Bounds, Terrain};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 const G: f64 = 9.81;
 
@@ -157,4 +163,73 @@ fn a_first_stage_that_comes_to_no_number_is_told() {
     assert!(solver.is_broken() && solver.broken_cell().is_some());
     solver.take_back();
     assert!(!solver.is_broken() && solver.columns.iter().all(|column| column.volume > 0.0));
+}
+
+/// A flood by scheme voronoi.
+fn flood(scene: &str, seed: u64) -> VoronoiFlood {
+    let mut scene = Scene::parse(scene, "scene", &[]).unwrap();
+    scene.resolve_defaults();
+    let scene = scene.flood().unwrap();
+    let terrain = Terrain::open(&scene.terrain, seed, Path::new("")).unwrap();
+    VoronoiFlood::new(&scene.flood, seed, Path::new(""), Arc::new(terrain)).unwrap()
+}
+
+/// Obstacles across places where cells grow: a whole cell may be smaller there than a piece of a larger one that is joined to it.
+#[test]
+fn cells_close_where_walls_cut_cells_of_several_sizes() {
+    for seed in (0..20).chain([142_053]) {
+        let scene = r#"
+            run.until_s = 1
+            terrain.plane = { extent = { length_m = 60, width_m = 60, cell_m = 2 }, height_m = 1.914, slope_east = 0.003849, slope_north = 0.03095 }
+            [flood]
+            spacing_m = 3
+            wet_depth_m = 0.0465
+            edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
+            water = [{ level_m = 2.76 }]
+            finer = [{ line = [[35.6, 28.47], [4.687, 33.02], [43.58, 45.4]], spacing_m = 1.5, within_m = 3.672 }]
+            [[flood.obstacle]]
+            name = "house"
+            polygon = [[32, 23.69], [37.044, 25.432], [36.5396, 41.11], [32, 37.626]]
+            "#;
+        let flood = flood(scene, seed);
+        let mesh = &flood.solver.mesh;
+        let mut sums = vec![[0.0; 2]; mesh.len()];
+        for face in &mesh.faces {
+            let mut add = |cell: u32, sign: f64| {
+                let sum = &mut sums[cell as usize];
+                *sum = [0, 1].map(|axis| sum[axis] + sign * face.normal[axis]);
+            };
+            add(face.cells[0], 1.0);
+            if face.border().is_none() {
+                add(face.cells[1], -1.0);
+            }
+        }
+        let most = sums.iter().map(|sum| sum[0].hypot(sum[1])).fold(0.0, f64::max);
+        assert!(most < 1e-10, "seed {seed}: {most} m");
+    }
+}
+
+/// The ground beside a part of the wall stands higher than its crest and than the lake.
+#[test]
+fn a_lake_beside_a_wall_below_the_ground_stays_at_rest() {
+    for storage in ["mean", "level-volume"] {
+        let scene = format!(
+            r#"
+            run.until_s = 1
+            terrain.rough-hills = {{ extent = {{ length_m = 60, width_m = 60, cell_m = 2 }}, hill_size_m = 15, relief_m = 2.771, roughness = 0.5 }}
+            [flood]
+            spacing_m = 6
+            storage = "{storage}"
+            edges = {{ west = "wall", east = "wall", south = "wall", north = "wall" }}
+            water = [{{ level_m = 2.173 }}]
+            obstacle = [{{ name = "dyke", line = [[42.51, 16.13], [34.94, 29.8], [4.979, 28.04]], crest_m = 0.07 }}]
+            "#
+        );
+        for seed in [93_849, 1, 2, 3] {
+            let mut flood = flood(&scene, seed);
+            flood.advance_to(1.0, &AtomicBool::new(false)).unwrap();
+            let fastest = flood.solver.water.iter().map(Water::speed).fold(0.0, f64::max);
+            assert!(fastest < 1e-12, "{storage}, seed {seed}: {fastest} m/s");
+        }
+    }
 }

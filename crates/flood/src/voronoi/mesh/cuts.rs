@@ -233,7 +233,7 @@ impl<'a> Build<'a> {
         &self.entries[entry].pieces[piece - self.first[entry]]
     }
 
-    /// Number of a piece's cell if it is the largest of the cell.
+    /// Number of a piece's cell if it is the first of the cell.
     fn id(&self, piece: usize) -> u64 {
         let entry = self.entry_of[piece];
         self.entries[entry].point + (piece - self.first[entry]) as u64 * self.layout.total()
@@ -349,24 +349,34 @@ impl<'a> Build<'a> {
         MIN_AREA_RATIO * self.layout.spacing_at(tile, k).powi(2)
     }
 
-    /// Joins small pieces to neighbours, the smallest first, until they are no longer small or have none.
+    /// Whether a piece is a whole Voronoi cell. Its neighbours farther from the walls know it by its point, so that what is joined to it has its number;
+    /// two whole cells are never joined.
+    fn is_whole(&self, piece: usize) -> bool {
+        !self.entries[self.entry_of[piece]].is_cut
+    }
+
+    /// Joins small pieces to neighbours, the smallest first, until they are no longer small, belong to a whole cell (which may be smaller, where cells
+    /// are finer) or have no neighbour.
     fn join_small(&self) -> Groups {
         let count = self.entry_of.len();
         let mut groups = Groups::new(count);
         let mut area: Vec<f64> = (0..count).map(|piece| self.piece(piece).area).collect();
+        let mut has_whole: Vec<bool> = (0..count).map(|piece| self.is_whole(piece)).collect();
         let mut members: Vec<Vec<usize>> = (0..count).map(|piece| vec![piece]).collect();
-        let mut queue: Vec<usize> = (0..count).filter(|piece| area[*piece] < self.small(*piece)).collect();
+        let is_small = |piece: &usize| !self.is_whole(*piece) && self.piece(*piece).area < self.small(*piece);
+        let mut queue: Vec<usize> = (0..count).filter(is_small).collect();
         queue.sort_by(|a, b| area[*a].total_cmp(&area[*b]).then(a.cmp(b)));
         for piece in queue {
             loop {
                 let group = groups.root(piece);
-                if area[group] >= self.small(piece) {
+                if has_whole[group] || area[group] >= self.small(piece) {
                     break;
                 }
                 let Some(other) = self.longest(&mut groups, group, &members[group]) else { break };
                 let (low, high) = (group.min(other), group.max(other));
                 groups.join(low, high);
                 area[low] += area[high];
+                has_whole[low] |= has_whole[high];
                 let moved = std::mem::take(&mut members[high]);
                 members[low].extend(moved);
             }
@@ -428,9 +438,12 @@ impl<'a> Build<'a> {
         cuts
     }
 
-    /// The members of a group, the largest first, and where their points are as seen from its.
+    /// The members of a group, the whole cell or else the largest first, and where their points are as seen from its.
     fn place(&self, members: &[usize], group_of: &[usize]) -> Vec<Placed> {
-        let larger = |a: &&usize, b: &&usize| self.piece(**a).area.total_cmp(&self.piece(**b).area).then(b.cmp(a));
+        let larger = |a: &&usize, b: &&usize| {
+            let whole = self.is_whole(**a).cmp(&self.is_whole(**b));
+            whole.then(self.piece(**a).area.total_cmp(&self.piece(**b).area)).then(b.cmp(a))
+        };
         let root = members.iter().max_by(larger).copied().unwrap_or(members[0]);
         let mut placed = vec![Placed { piece: root, offset: [0.0; 2] }];
         let mut next = 0;

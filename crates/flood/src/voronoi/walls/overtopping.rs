@@ -15,7 +15,7 @@ pub(crate) const MAX_CREST_SHARE: f64 = 0.5;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OverCrest {
     pub cells: [u32; 2],
-    /// Mean level of the crest, m.
+    /// Mean level of the crest, or of the ground beside it where that is higher, m.
     pub level: f64,
     /// m.
     pub length: f64,
@@ -31,7 +31,8 @@ pub(crate) fn crests(mesh: &Mesh) -> Vec<OverCrest> {
     mesh.crests().flat_map(|(cells, _)| cells).for_each(|cell| *counts.entry(cell).or_insert(0.0) += 1.0);
     let crest = |(cells, crest): ([u32; 2], &crate::voronoi::mesh::Crest)| OverCrest {
         cells,
-        level: crest.level,
+        // Where the ground of a cell stands higher, water flows over that.
+        level: cells.iter().map(|cell| mesh.level(*cell as usize, 0.0)).fold(crest.level, f64::max),
         length: crest.length,
         parts: cells.map(|cell| 1.0 / counts[&cell]),
         flow: (0, Column::default()),
