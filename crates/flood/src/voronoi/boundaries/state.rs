@@ -63,18 +63,17 @@ fn meets(beyond: f64, drift: f64, is_wet: bool, outgoing: f64, gravity: f64) -> 
         let critical = (outgoing / 3.0).max(0.0);
         return AtBoundary { depth: depth_of(critical, gravity), across: critical };
     }
-    if !is_wet {
-        // Onto dry ground: the critical depth of a dam break (Ritter 1892), as fast as the water beyond.
-        let critical = ((2.0 * beyond - drift) / 3.0).max(0.0);
-        return AtBoundary { depth: depth_of(critical, gravity), across: -critical };
-    }
     let incoming = drift - 2.0 * beyond;
     let (across, celerity) = (0.5 * (outgoing + incoming), 0.25 * (outgoing - incoming));
-    if across < -celerity {
-        AtBoundary { depth: depth_of(beyond, gravity), across: drift }
-    } else {
-        AtBoundary { depth: depth_of(celerity.max(0.0), gravity), across }
+    if is_wet && across >= -celerity {
+        return AtBoundary { depth: depth_of(celerity.max(0.0), gravity), across };
     }
+    // Onto dry ground or a film, faster than waves: as it is beyond where it is as fast there, else the critical depth of a dam break (Ritter 1892).
+    if -drift >= beyond {
+        return AtBoundary { depth: depth_of(beyond, gravity), across: drift };
+    }
+    let critical = (-incoming / 3.0).max(0.0);
+    AtBoundary { depth: depth_of(critical, gravity), across: -critical }
 }
 
 /// A discharge inwards, m2/s: c^2 (2c - outgoing) = g q where that flow is slower than waves, critical depth where it is not.
@@ -153,6 +152,27 @@ mod tests {
         let across = 2.0 * ((G * 2.2_f64).sqrt() - (G * 2.0_f64).sqrt());
         let found = state(Now::Beyond(3.0, 0.0, 1.0), &at(2.2, across), G);
         assert!((found.depth - 2.2).abs() < 1e-12 && (found.across - across).abs() < 1e-12);
+    }
+
+    /// Still water beyond comes in over a film as over dry ground, and the less the deeper the water inside is.
+    #[test]
+    fn a_held_level_comes_in_over_a_film_as_over_dry_ground() {
+        let into = |depth: f64| {
+            let found = state(Now::Beyond(1.6, 0.0, 1.0), &at(depth, 0.0), G);
+            -found.depth * found.across
+        };
+        let dry = 8.0 / 27.0 * 0.6 * (G * 0.6).sqrt();
+        assert!((into(0.0) / dry - 1.0).abs() < 1e-12);
+        for film in [1e-9, 1e-6, 1e-4] {
+            assert!((into(film) / dry - 1.0).abs() < 1e-12, "{film} m");
+        }
+        let mut before = dry;
+        for depth in (1..=600).map(|k| 0.001 * f64::from(k)) {
+            let now = into(depth);
+            assert!(now <= before * (1.0 + 1e-12) && before - now < 0.01 * dry, "{depth} m: {now} after {before} m2/s");
+            before = now;
+        }
+        assert!(before.abs() < 1e-12, "{before}");
     }
 
     /// What comes in faster than waves comes over the ground of the face, whatever that of the cell is.

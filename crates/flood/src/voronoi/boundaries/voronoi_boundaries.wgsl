@@ -38,22 +38,23 @@ fn critical(outgoing: f32) -> vec2f {
 }
 
 // Celerity and velocity outwards where the water beyond has a celerity and moves outwards at `drift`, by the characteristics that reach the face (Toro 2001,
-// section 6.3): a free fall where there is none, the critical depth of a dam break (Ritter 1892) onto dry ground.
+// section 6.3): a free fall where there is none; onto dry ground or a film as it is beyond where it is faster than waves there, else the critical depth of a
+// dam break (Ritter 1892).
 fn meets(beyond: f32, drift: f32, is_wet: bool, outgoing: f32) -> vec2f {
     if beyond <= 0.0 {
         return critical(outgoing);
     }
-    if !is_wet {
-        let speed = max((2.0 * beyond - drift) / 3.0, 0.0);
-        return vec2f(speed, -speed);
-    }
     let incoming = drift - 2.0 * beyond;
     let across = 0.5 * (outgoing + incoming);
     let celerity = 0.25 * (outgoing - incoming);
-    if across < -celerity {
+    if is_wet && across >= -celerity {
+        return vec2f(max(celerity, 0.0), across);
+    }
+    if -drift >= beyond {
         return vec2f(beyond, drift);
     }
-    return vec2f(max(celerity, 0.0), across);
+    let speed = max(-incoming / 3.0, 0.0);
+    return vec2f(speed, -speed);
 }
 
 // Nothing comes in.
