@@ -108,20 +108,19 @@ impl Patch {
 }
 
 impl Change {
-    /// Adds water to a cell.
+    /// Adds water to a cell. The momentum that a thin film cannot carry counts as taken.
     pub fn apply(&mut self, solver: &mut Solver, cell: usize, added: Column) {
         let (mesh, gravity) = (&solver.mesh, solver.gravity);
         let column = &mut solver.columns[cell];
         let energy = |column: &Column| column.kinetic() + gravity * mesh.potential(cell, column.volume);
-        let before = column.volume;
+        let before = *column;
         self.energy -= energy(column);
-        column.volume = (before + added.volume).max(0.0);
-        self.volume += column.volume - before;
-        for axis in 0..2 {
-            column.momentum[axis] += added.momentum[axis];
-            self.momentum[axis] += added.momentum[axis];
-        }
+        column.volume = (before.volume + added.volume).max(0.0);
+        self.volume += column.volume - before.volume;
+        (0..2).for_each(|axis| column.momentum[axis] += added.momentum[axis]);
         self.energy += energy(column);
         solver.touch(cell);
+        let now = solver.columns[cell].momentum;
+        (0..2).for_each(|axis| self.momentum[axis] += now[axis] - before.momentum[axis]);
     }
 }

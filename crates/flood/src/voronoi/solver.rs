@@ -471,7 +471,10 @@ impl Solver {
                     found.slowed[1] += weight * (column.momentum[1] - q);
                 } else if second && before[k].volume > 0.0 {
                     *column = column.mean(before[k]);
+                    let [p, q] = column.momentum;
                     *water = mesh.water(cell, column);
+                    found.slowed[0] += 2.0 * (column.momentum[0] - p);
+                    found.slowed[1] += 2.0 * (column.momentum[1] - q);
                 }
                 found.see(water, mesh.width[cell], mesh.rim[cell], gravity);
             }

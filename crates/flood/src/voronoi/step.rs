@@ -110,10 +110,11 @@ impl VoronoiFlood {
     /// Lets water come and go beside its motion: structures, inflows, rain, infiltration, what falls.
     fn bring_and_take(&mut self, from: f64, until: f64) {
         let step = until - from;
-        walls::overtop(&mut self.solver, step);
+        let over_crests = walls::overtop(&mut self.solver, step);
         let Self { solver, inflows, structures, patches, weather, state, .. } = self;
         let momentum = |change: &Change| DENSITY * (change.momentum[0] + change.momentum[1]);
         let (water, moments, energy) = (&mut state.water, &mut state.momentum, &mut state.energy);
+        moments.book(momentum(&over_crests));
         let mut book = |change: Change| {
             water.book(change.volume);
             moments.book(momentum(&change));
@@ -167,6 +168,9 @@ impl VoronoiFlood {
                 let mut change = Change::default();
                 change.apply(&mut self.solver, cell, Column { volume: drop.volume, momentum });
                 self.state.energy.book(DENSITY * change.energy);
+                // The drop's own momentum is in the ledger already.
+                let lost = [0, 1].map(|axis| change.momentum[axis] - momentum[axis]);
+                self.state.momentum.book(DENSITY * (lost[0] + lost[1]));
             }
             None => {
                 self.state.water.outflow.add(drop.volume);

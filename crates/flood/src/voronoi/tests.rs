@@ -233,3 +233,51 @@ fn a_lake_beside_a_wall_below_the_ground_stays_at_rest() {
         }
     }
 }
+
+/// A hump of water runs out over hills in the rain, over films too thin to carry what momentum it brings.
+#[test]
+fn momentum_that_films_cannot_carry_is_in_the_ledger() {
+    let scene = r#"
+        run.until_s = 60
+        terrain.rough-hills = { extent = { length_m = 60, width_m = 60, cell_m = 5 }, hill_size_m = 15, relief_m = 2.3, roughness = 0.5 }
+        [flood]
+        spacing_m = 6
+        friction.chezy = 61.8
+        rain.intensity_mm_per_h = 131
+        edges = { west = "open", east = "wall", south = "wall", north = { normal_depth = 0.0425 } }
+        water = [{ depth_m = 0.7 }, { depth_m = "1 + 0.5 * exp(-((x - 30)^2 + (y - 30)^2) / 50)" }]
+        "#;
+    for seed in [1, 2, 3] {
+        let mut flood = flood(scene, seed);
+        flood.advance_to(45.0, &AtomicBool::new(false)).unwrap();
+        let ledger = flood.ledger();
+        let momentum = ledger.balances.iter().find(|balance| balance.quantity == "momentum").unwrap();
+        assert!(momentum.relative_error().abs() < 1e-9, "seed {seed}: {momentum:?}");
+    }
+}
+
+/// Rain has left a film on ground below the level that a part of the side holds.
+#[test]
+fn a_held_level_floods_land_with_a_film_on_it() {
+    let scene = r#"
+        run.until_s = 10
+        terrain.bowl = { extent = { length_m = 60, width_m = 60, cell_m = 5 }, depth_m = 1.5, radius_m = 20 }
+        [flood]
+        spacing_m = 6
+        friction.linear = 0.66
+        rain.intensity_mm_per_h = 32
+        edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
+        edge_part = [{ side = "north", from = 25, to = 39.5, edge = { stage = [[0, 0], [5, 0], [5.01, 2.5]] } }]
+        "#;
+    for seed in [1, 2, 3] {
+        let mut flood = flood(scene, seed);
+        flood.advance_to(10.0, &AtomicBool::new(false)).unwrap();
+        let fastest = flood.solver.water.iter().map(Water::speed).fold(0.0, f64::max);
+        assert!(fastest < 10.0, "seed {seed}: {fastest} m/s");
+        let ledger = flood.ledger();
+        let rained = 32e-3 / 3600.0 * 10.0 * 60.0 * 60.0;
+        assert!(ledger.balances[0].now > 10.0 * rained, "seed {seed}: {:?}", ledger.balances[0]);
+        let errors = ledger.balances.iter().map(|balance| balance.relative_error().abs());
+        assert!(errors.fold(0.0, f64::max) < 1e-6, "seed {seed}: {:?}", ledger.balances);
+    }
+}

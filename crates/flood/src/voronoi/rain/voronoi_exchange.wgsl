@@ -58,7 +58,10 @@ fn exchange(cell: u32, own: ptr<function, Found>) {
     }
     column.volume = tidy(column.volume);
     (*own).energy = energy_gained(cell, before, column, area, ground[cell].bed);
-    column.momentum = bounded_momentum(column.momentum, column.volume.x, area);
+    let bounded = bounded_momentum(column.momentum, column.volume.x, area);
+    // What a thin film cannot carry counts as taken.
+    (*own).momentum += (bounded.x - column.momentum.x) + (bounded.y - column.momentum.y);
+    column.momentum = bounded;
     columns[cell] = column;
     water[cell] = water_in(cell, column, area);
 }

@@ -46,17 +46,19 @@ pub(crate) fn coefficient(gravity: f64) -> f64 {
 }
 
 /// Lets water flow over crests for `step` s: Poleni's formula for a broad crest, and what the water behind it holds back (Villemonte 1947). All that flows is
-/// found from the water before, so that the order of the crests does not count. It takes its velocity along.
-pub(crate) fn overtop(solver: &mut Solver, step: f64) {
+/// found from the water before, so that the order of the crests does not count. It takes its velocity along. The change of all the water: of its momentum only
+/// what thin films cannot carry.
+pub(crate) fn overtop(solver: &mut Solver, step: f64) -> Change {
     let mut crests = std::mem::take(&mut solver.crests);
     crests.iter_mut().for_each(|crest| crest.flow = crest.flow(solver, step));
+    let mut change = Change::default();
     for OverCrest { cells, flow: (from, given), .. } in crests.iter().filter(|crest| crest.flow.1.volume > 0.0) {
         let taken = Column { volume: -given.volume, momentum: given.momentum.map(|momentum| -momentum) };
-        let mut change = Change::default();
         change.apply(solver, cells[*from] as usize, taken);
         change.apply(solver, cells[1 - from] as usize, *given);
     }
     solver.crests = crests;
+    change
 }
 
 impl OverCrest {
