@@ -40,7 +40,7 @@ impl Case {
         Simulation::open(scene, Path::new("")).unwrap()
     }
 
-    /// A run on the GPU into a folder, recorded. The GPU is lost by the way, at a part of the run's time and a moment later.
+    /// A run on the GPU into a folder, recorded. With `lost` the GPU is lost amid it: at that part of the run's time, and so much later.
     fn record(&self, folder: &Path, gpu: &Gpu, lost: Option<(f64, Duration)>) -> Result<Summary, Error> {
         let mut simulation = self.open();
         simulation.use_this_gpu(gpu.clone()).unwrap();
