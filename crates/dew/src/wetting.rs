@@ -5,7 +5,7 @@
 
 use crate::bodies;
 use crate::dew::Dew;
-use crate::drops::{DropLaws, DropState, Drops, Patch, Portion, Share, Surfaces};
+use crate::drops::{DropLaws, DropState, Drops, Patch, Portion, Share, Surfaces, Unseen};
 use crate::fogging::{Cover, Fogging, Story, SurfaceFace, open_area};
 use crate::solids::SolidParticle;
 use corpuscle_model::{Column, ExactSum, ParticleSet, Surface, Values};
@@ -18,6 +18,9 @@ const DROP_UPDATE_STEPS: u64 = 10;
 
 /// Extra multiples of [`DROP_UPDATE_STEPS`] for each drop per air particle: drops must not cost more than the air.
 const STEPS_PER_DROP_RATIO: usize = 2;
+
+/// Patches of which unseen drops cover less than this part are not shown.
+const LEAST_SHOWN: f64 = 1e-4;
 
 /// Drops, and where the boundary particles have their water from.
 pub(crate) struct Wetting {
@@ -226,6 +229,34 @@ impl Wetting {
                 column("temperature_k", "K", &|patch| temperatures[self.particles[patch] as usize]),
             ],
             shape: bodies::shape(self.drops.solids()[solid].clone()),
+        }
+    }
+
+    /// The patches with drops too small to be followed one by one, as particles: middle and half width of each, and their water.
+    pub fn unseen_set(&self) -> ParticleSet {
+        let (patches, unseen) = (self.drops.patches(), |patch: usize| self.drops.unseen_on(patch, &self.shares[patch]));
+        let wet: Vec<(usize, Unseen)> = (0..patches.len())
+            .map(|patch| (patch, unseen(patch)))
+            .filter(|(_, unseen)| unseen.covered >= LEAST_SHOWN)
+            .collect();
+        let column = |name, unit, of: &dyn Fn(&Unseen) -> f64| Column {
+            name,
+            unit,
+            values: Values::Scalar(wet.iter().map(|(_, unseen)| of(unseen)).collect()),
+        };
+        let normals = wet.iter().map(|&(patch, _)| patches[patch].normal).collect();
+        ParticleSet {
+            name: "unseen".into(),
+            id: wet.iter().map(|&(patch, _)| patch as u64).collect(),
+            position: wet.iter().map(|&(patch, _)| patches[patch].position).collect(),
+            velocity: vec![[0.0; 3]; wet.len()],
+            radius: wet.iter().map(|&(patch, _)| patches[patch].half_width).collect(),
+            mass: wet.iter().map(|&(patch, _)| self.shares[patch].unseen).collect(),
+            columns: vec![
+                column("covered_part", "", &|unseen| unseen.covered),
+                column("mean_radius", "m", &|unseen| unseen.radius),
+                Column { name: "normal", unit: "", values: Values::Vector(normals) },
+            ],
         }
     }
 

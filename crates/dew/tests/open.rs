@@ -68,7 +68,7 @@ fn frames_show_air_solids_and_drops() {
     advance(&mut dew, 0.1);
     let frame = dew.frame();
     let names: Vec<_> = frame.sets.iter().map(|set| set.name.as_str()).collect();
-    assert_eq!(names, ["air", "solid", "drops"]);
+    assert_eq!(names, ["air", "solid", "drops", "unseen"]);
     for set in &frame.sets {
         for column in &set.columns {
             let length = match &column.values {

@@ -66,6 +66,7 @@ fn droplet(index: usize, side: usize) -> Droplet {
         volume: 1.0,
         reach: 2.0,
         foam: 0.0,
+        flow: [1.0, 0.5],
         id: index as u64,
     }
 }

@@ -35,7 +35,7 @@ mod view;
 pub use balls::{BallPainter, BallStyle, Balls, BallsOfDevice, Shading, ValueOfDevice};
 pub use camera::{Camera, Lens, ProjectedBall, Projection};
 pub use camera_path::CameraPath;
-pub use caps::{Cap, CapPainter, Caps};
+pub use caps::{Cap, CapPainter, Caps, FogPatch};
 pub use colour::{ColourTable, linear};
 pub use drawable::{Before, Drawable, Through};
 pub use error::RenderError;

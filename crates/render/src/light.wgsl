@@ -44,6 +44,20 @@ fn sunshine_by(taps: i32, place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
     return lit / f32(taps);
 }
 
+// Distance over which air leaves 1/e of the light of what is seen through it, m: a visual range of 50 km by Koschmieder's
+// 3.912 = range over this distance (1924).
+const CLEAR_AIR: f32 = 12800.0;
+
+// Light from a place as it comes through the air, which adds light of its own.
+fn hazed(light: vec3f, place: vec3f) -> vec3f {
+    // Indoors there is none, and a map is seen from straight above.
+    if view.frame.w > 0.5 || view.eye.w < 0.5 {
+        return light;
+    }
+    let left = exp(-length(place - view.eye.xyz) * view.frame.z / CLEAR_AIR);
+    return mix(view.horizon.rgb, light, left);
+}
+
 // Light that a matt surface of a colour gives back.
 fn matt(colour: vec3f, normal: vec3f, shine: f32) -> vec3f {
     return matt_turned(colour, dot(normal, view.sun.xyz), normal.z, shine);

@@ -4,8 +4,9 @@ use crate::shared::declared;
 use corpuscle_gpu::{DECLARED, Gpu, GroupLayout, ImportError, join, wgpu};
 
 /// Pieces by name: see `#import`.
-const LIBRARY: [(&str, &str); 17] = [
+const LIBRARY: [(&str, &str); 20] = [
     ("full_screen", include_str!("full_screen.wgsl")),
+    ("noise", include_str!("noise.wgsl")),
     ("view", include_str!("view.wgsl")),
     ("sky", include_str!("sky/sky.wgsl")),
     ("light", include_str!("light.wgsl")),
@@ -16,6 +17,8 @@ const LIBRARY: [(&str, &str); 17] = [
     ("droplet_depth", include_str!("fluid/droplet_depth.wgsl")),
     ("droplet_matter", include_str!("fluid/droplet_matter.wgsl")),
     ("fluid", include_str!("fluid/fluid.wgsl")),
+    ("ripples", include_str!("fluid/ripples.wgsl")),
+    ("mirror", include_str!("fluid/mirror.wgsl")),
     ("press", include_str!("tone/press.wgsl")),
     ("smoothing", include_str!("fluid/smoothing.wgsl")),
     ("surface", include_str!("solids/surface.wgsl")),

@@ -16,8 +16,8 @@ corpuscle_gpu::declare! {
         pub(crate) const SPLAT_GROUP: u32 = 128;
         /// Index of the number of particles in the arguments of splats.
         pub(crate) const SPLAT_COUNT: u32 = 25;
-        /// Numbers a pixel in which splats add up water and foam.
-        pub(crate) const SUMS: u32 = 5;
+        /// Numbers a pixel in which splats add up water, foam and flow.
+        pub(crate) const SUMS: u32 = 7;
         /// Quads along a side of a tile of the ground.
         pub(crate) const QUADS: u32 = crate::terrain::QUADS_OF_TILE;
     }
@@ -106,8 +106,10 @@ corpuscle_gpu::declare! {
             pub(crate) height: f32,
             /// Where its neighbours' numbers begin, and how many there are.
             pub(crate) neighbours: [u32; 2],
+            /// Of a patch with drops too small to be drawn one by one the part that they cover; 0 for a drop.
+            pub(crate) covered: f32,
             /// Fills up.
-            pub(crate) unused: [u32; 2],
+            pub(crate) unused: u32,
         }
 
         /// Style of drops.
@@ -136,6 +138,8 @@ corpuscle_gpu::declare! {
             pub(crate) colour: [f32; 4],
             /// Part of light that the coat mirrors, first.
             pub(crate) gloss: [f32; 4],
+            /// Colour of the roof; 1 for a building.
+            pub(crate) roof: [f32; 4],
         }
 
         /// Style of a fluid.
@@ -150,6 +154,8 @@ corpuscle_gpu::declare! {
             pub(crate) surface: [f32; 4],
             /// West, south, east and north end of what is drawn.
             pub(crate) within: [f32; 4],
+            /// Length of the longest ripples, stage units; steepness of ripples on fast water; time, s; time in which a pattern that goes with the water comes and goes, s.
+            pub(crate) ripples: [f32; 4],
         }
 
         /// A floor that only its shadows show.
@@ -196,8 +202,12 @@ corpuscle_gpu::declare! {
             pub(crate) normal: [f32; 3],
             /// Thickness over width: 1 for a ball.
             pub(crate) flatness: f32,
-            /// What pass thickness adds up: depth in the middle, m (0: a ball, whose chord counts), foam, radius of the footprint, seed.
+            /// What pass thickness adds up: depth in the middle, m (0: a ball, whose chord counts), foam, radius of the footprint; its number, by which tests tell them apart.
             pub(crate) matter: [f32; 4],
+            /// Velocity eastwards and northwards, m/s.
+            pub(crate) flow: [f32; 2],
+            /// Fills up.
+            pub(crate) unused: [f32; 2],
         }
 
         /// A piece of a tube, in stage coordinates.

@@ -26,7 +26,7 @@ impl Table {
     }
 
     fn caps(&self, caps: impl IntoIterator<Item = Cap>) -> Caps {
-        self.painter.caps(self.renderer.gpu(), &self.stage, caps)
+        self.painter.caps(self.renderer.gpu(), &self.stage, caps, [])
     }
 
     fn draw(&self, caps: &mut [Caps]) -> Image {

@@ -147,7 +147,7 @@ fn dew_on_a_hill(table: &Table, left_out: &str) -> Image {
         normal: [0.0, -1.0, 0.0],
         height: 0.2,
     };
-    let mut caps = CapPainter::new(&table.renderer).caps(gpu, &stage, (0..15).map(cap));
+    let mut caps = CapPainter::new(&table.renderer).caps(gpu, &stage, (0..15).map(cap), []);
     let mut things: Vec<&mut dyn Drawable> = Vec::new();
     let all: [(char, &mut dyn Drawable); 3] = [('t', &mut terrain), ('g', &mut glass), ('c', &mut caps)];
     things.extend(all.into_iter().filter(|(letter, _)| !left_out.contains(*letter)).map(|(_, thing)| thing));

@@ -29,6 +29,7 @@ fn pond() -> Vec<Droplet> {
             volume: 0.05 * 0.05 * 0.3,
             reach: 0.1,
             foam: if x > 0.5 { 0.6 } else { 0.0 },
+            flow: [0.3 - y, -1.4 * x],
             id: index as u64,
         }
     };
@@ -43,9 +44,21 @@ fn from(distance: f64) -> Camera {
 }
 
 fn picture(gpu: &Gpu, splats: bool, camera: &Camera, stage: &Stage, fill: impl FnOnce(&mut Fluid)) -> Image {
+    let style = FluidStyle { smoothing: Smoothing::None, steepness: 0.0, ..FluidStyle::water(0.05) };
+    picture_of(gpu, style, splats, camera, stage, fill)
+}
+
+fn picture_of(
+    gpu: &Gpu,
+    style: FluidStyle,
+    splats: bool,
+    camera: &Camera,
+    stage: &Stage,
+    fill: impl FnOnce(&mut Fluid),
+) -> Image {
     let renderer = Renderer::new(gpu);
-    let style = FluidStyle { smoothing: Smoothing::None, ..FluidStyle::water(0.05) };
     let mut fluid = FluidPainter::new(&renderer).fluid(gpu, stage, style);
+    fluid.set_time(gpu, 1.3);
     fluid.splat(splats);
     fill(&mut fluid);
     let target = Target::new(gpu, SIZE, 1).unwrap();
@@ -85,6 +98,28 @@ fn splats_look_as_sprites_do() {
     }
     compare(&gpu, "from above", &Camera::plan(&stage(), 1.6, [0.0; 4]), &pond());
     compare(&gpu, "a large ball", &from(1.0), &[Droplet::ball([0.0; 3], 0.9)]);
+}
+
+/// Mean difference of two pictures, of 255.
+fn mean_apart(one: &Image, other: &Image) -> f64 {
+    let sum: u64 = one.rgba.iter().zip(&other.rgba).map(|(one, other)| u64::from(one.abs_diff(*other))).sum();
+    sum as f64 / one.rgba.len() as f64
+}
+
+/// Sprites add up the flow in numbers of 11 bits, by which ripples are a little elsewhere.
+#[test]
+fn splats_have_the_ripples_of_sprites() {
+    let Some(gpu) = require_gpu("splats") else { return };
+    let style = FluidStyle { smoothing: Smoothing::None, ..FluidStyle::water(0.05) };
+    let draw = |splats: bool, turned: f64| {
+        let turn = |droplet: Droplet| Droplet { flow: droplet.flow.map(|along| turned * along), ..droplet };
+        picture_of(&gpu, style, splats, &from(1.0), &stage(), |fluid| fluid.fill(&gpu, pond().into_iter().map(turn)))
+    };
+    let (splats, sprites) = (draw(true, 1.0), draw(false, 1.0));
+    let apart = [mean_apart(&splats, &sprites), mean_apart(&draw(true, -1.0), &sprites)];
+    println!("{apart:?} of 255");
+    // A fiftieth of what the opposite flow changes.
+    assert!(apart[0] < 0.02 * apart[1], "{apart:?}");
 }
 
 #[test]

@@ -131,7 +131,7 @@ mod tests {
         let settings = |ground| PictureSettings {
             size: [480, 270],
             samples: 1,
-            heights: 2.0,
+            heights: 4.0,
             ground,
             ..PictureSettings::default()
         };

@@ -39,8 +39,13 @@ const TURBID: [f64; 2] = [0.4, 20.0];
 const BLUES: [u32; 4] = [0x00bfe3f7, 0x006fb5e8, 0x001d6fbd, 0x000a2d63];
 /// Drawn thickness of walls of no thickness, fraction of the longer side of the terrain.
 const LINE_WIDTH: f64 = 0.003;
-/// Colour of buildings.
+/// Colour of obstacles.
 pub(super) const WALLS: [u8; 3] = [206, 196, 184];
+/// So many obstacles are a town, whose buildings have roofs and windows.
+const TOWN: usize = 4;
+/// Colours of walls and of roofs in a town.
+const PLASTER: [[u8; 3]; 5] = [[214, 204, 188], [198, 178, 150], [178, 132, 106], [196, 198, 196], [222, 214, 202]];
+const ROOFS: [[u8; 3]; 3] = [[150, 84, 62], [122, 116, 112], [134, 96, 76]];
 
 /// Draws a flood.
 pub(crate) struct FloodPicture {
@@ -147,8 +152,9 @@ impl FloodPicture {
         let roof = shapes.iter().map(|shape| shape.bounds[1][2]).chain(tops).fold(high, f64::max);
         let stage = Stage::new([from[0], from[1], base], [to[0], to[1], roof]);
         let colours = natural_colours(&field);
-        let walls = |shape| Solid::new(&context.renderer, &stage, shape, SolidStyle::Opaque(WALLS, 0.1));
-        let mut buildings: Vec<Solid> = shapes.iter().map(walls).collect();
+        let is_town = shapes.len() >= TOWN;
+        let solid = |(number, shape)| Solid::new(&context.renderer, &stage, shape, style(number, is_town));
+        let mut buildings: Vec<Solid> = shapes.iter().enumerate().map(solid).collect();
         if !lines.is_empty() {
             let thickness = LINE_WIDTH * (to[0] - from[0]).max(to[1] - from[1]);
             let corners = plates(&lines, thickness, heights);
@@ -189,6 +195,7 @@ impl FloodPicture {
         // Its style is that of the first particles there are, so that it does not change in a film.
         let fluid = self.fluid.get_or_insert_with(|| context.fluids.fluid(gpu, stage, style()));
         fluid.splat(self.splats);
+        fluid.set_time(gpu, time);
         if let Some(particles) = moment.on_device {
             let water = match &mut self.device_water {
                 Some(water) => water,
@@ -274,6 +281,18 @@ pub(super) fn depths(set: &ParticleSet) -> &[f64] {
     match set.columns.iter().find(|column| column.name == "depth").map(|column| &column.values) {
         Some(Values::Scalar(depths)) => depths,
         _ => &[],
+    }
+}
+
+/// Style of an obstacle by its number.
+fn style(number: usize, is_town: bool) -> SolidStyle {
+    // Multiplied by the golden ratio numbers are spread evenly (Knuth, The Art of Computer Programming 3, 6.4).
+    let spread = (number as u32).wrapping_mul(2_654_435_769) >> 16;
+    let of = |colours: &[[u8; 3]], spread: u32| colours[spread as usize % colours.len()];
+    if is_town {
+        SolidStyle::Building(of(&PLASTER, spread), of(&ROOFS, spread / 16))
+    } else {
+        SolidStyle::Opaque(WALLS, 0.1)
     }
 }
 

@@ -14,9 +14,9 @@ fn sphere_centre(cap: CapInstance) -> vec3f {
     return cap.place + (cap.height - sphere_radius(cap)) * cap.out;
 }
 
-// True for drops too small to be seen one by one.
+// True for drops too small to be seen one by one, and for patches of such drops.
 fn is_fine(cap: CapInstance) -> bool {
-    return cap.radius < settings.finest * pixel_at(cap.place);
+    return cap.covered > 0.0 || cap.radius < settings.finest * pixel_at(cap.place);
 }
 
 // A corner of a square that faces the eye.

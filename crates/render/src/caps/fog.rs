@@ -33,7 +33,7 @@ impl Fog {
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
         }
-        .added(gpu, COVERED);
+        .added(gpu, &[COVERED]);
         let shader = Shader::new(composing.0, composing.1);
         let compose = PipelineDescriptor {
             label: "fog compose",

@@ -33,6 +33,19 @@ pub struct Cap {
     pub height: f64,
 }
 
+/// A part of a surface with drops too small to be drawn one by one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FogPatch {
+    /// Its middle, m.
+    pub position: [f64; 3],
+    /// Half its width, m.
+    pub half_width: f64,
+    /// Outward unit normal of the surface.
+    pub normal: [f64; 3],
+    /// The part of it that the drops cover.
+    pub covered: f64,
+}
+
 /// Draws drops; holds the pipelines of all.
 #[derive(Debug)]
 pub struct CapPainter {
@@ -76,8 +89,14 @@ impl CapPainter {
         Self { tools: Arc::new(Tools { pipeline, layout, behind, fog }) }
     }
 
-    /// Drops; those without height are left out.
-    pub fn caps(&self, gpu: &Gpu, stage: &Stage, caps: impl IntoIterator<Item = Cap>) -> Caps {
+    /// Drops and fog; drops without height and fog that covers nothing are left out.
+    pub fn caps(
+        &self,
+        gpu: &Gpu,
+        stage: &Stage,
+        caps: impl IntoIterator<Item = Cap>,
+        fog: impl IntoIterator<Item = FogPatch>,
+    ) -> Caps {
         let drawn = |cap: Cap| CapInstance {
             place: stage.place(cap.position).into(),
             radius: stage.length(cap.radius),
@@ -94,6 +113,16 @@ impl CapPainter {
         let discs: Vec<_> = all.iter().map(|cap| (Vec3::from(cap.place), cap.radius)).collect();
         let (spans, list) = neighbours::neighbours(&discs, GAP * neck);
         all.iter_mut().zip(spans).for_each(|(cap, span)| cap.neighbours = span);
+        let patch = |fog: FogPatch| CapInstance {
+            place: stage.place(fog.position).into(),
+            // A disc of the patch's area.
+            radius: stage.length(2.0 * fog.half_width / std::f64::consts::PI.sqrt()),
+            out: fog.normal.map(|part| part as f32),
+            height: f32::MIN_POSITIVE,
+            covered: fog.covered as f32,
+            ..CapInstance::default()
+        };
+        all.extend(fog.into_iter().map(patch).filter(is_finite).filter(|patch| patch.covered > 0.0));
         let (drops, list) = (storage(gpu, "caps", &all), storage(gpu, "caps' neighbours", &list));
         let settings = CapUniforms { neck: neck.max(1e-9), finest: FINEST, ..CapUniforms::default() };
         let settings = uniform(gpu, "caps", &settings);

@@ -24,14 +24,17 @@ pub struct Droplet {
     pub reach: f64,
     /// Foam on it: 0 none, 1 white.
     pub foam: f64,
-    /// Seed of its pattern of foam.
+    /// Velocity eastwards and northwards, m/s.
+    pub flow: [f64; 2],
+    /// Its number.
     pub id: u64,
 }
 
 impl Droplet {
     /// A ball.
     pub fn ball(place: [f64; 3], radius: f64) -> Self {
-        Self { place, radius, normal: [0.0, 0.0, 1.0], flatness: 1.0, volume: 0.0, reach: radius, foam: 0.0, id: 0 }
+        let (normal, flow) = ([0.0, 0.0, 1.0], [0.0; 2]);
+        Self { place, radius, normal, flatness: 1.0, volume: 0.0, reach: radius, foam: 0.0, flow, id: 0 }
     }
 
     /// Height of its upper side beside its middle by this much `[eastwards, northwards]`, m, as if it went on flat.
@@ -51,6 +54,8 @@ impl Droplet {
             normal: DVec3::from(self.normal).normalize_or(DVec3::Z).as_vec3().into(),
             flatness: self.flatness as f32,
             matter: [depth as f32, self.foam as f32, stage.length(self.reach), (self.id % 4096) as f32],
+            flow: self.flow.map(|along| along as f32),
+            unused: [0.0; 2],
         };
         let all: &[f32] = bytemuck::cast_slice(std::slice::from_ref(&drawn));
         all.iter().all(|number| number.is_finite()).then_some(drawn)

@@ -10,6 +10,7 @@ struct Sprite {
     @location(3) @interpolate(flat) normal: vec3f,
     @location(4) @interpolate(flat) flatness: f32,
     @location(5) @interpolate(flat) matter: vec4f,
+    @location(6) @interpolate(flat) flow: vec2f,
 }
 
 // The quad round a particle, in the plane across the line of sight to its middle.
@@ -58,6 +59,7 @@ fn sprite_at(droplet: DropletInstance, quad: Quad, offset: vec3f) -> Sprite {
     out.normal = droplet.normal;
     out.flatness = quad.flatness;
     out.matter = droplet.matter;
+    out.flow = droplet.flow;
     return out;
 }
 

@@ -4,8 +4,6 @@
 
 // The length of a line of sight in water is bounded where it grazes the surface.
 const LEAST_COSINE: f32 = 0.08;
-// Flecks of foam that a particle carries.
-const FLECKS: i32 = 5;
 
 // The quad on which a particle's water is spread.
 fn matter_quad(droplet: DropletInstance) -> Quad {
@@ -30,27 +28,5 @@ fn matter_at(in: Sprite) -> vec4f {
     let out = dot(place, place) / (in.radius * in.radius);
     let left = max(1.0 - out, 0.0);
     let share = left * left * left;
-    var foam = 0.0;
-    if in.matter.y > 0.0 {
-        foam = in.matter.y * share * flecks(in, place);
-    }
-    return vec4f(in.matter.x * share / abs(slant), foam, share, share);
-}
-
-// A pattern of specks that goes with the particle, 1 on average.
-fn flecks(in: Sprite, place: vec3f) -> f32 {
-    var sum = 0.0;
-    for (var fleck = 0; fleck < FLECKS; fleck++) {
-        let random = hash(in.matter.w + f32(fleck) * 0.731);
-        let angle = 6.2831853 * random.x;
-        let at = 0.75 * in.radius * sqrt(random.y) * vec2f(cos(angle), sin(angle));
-        let away = (place.xy - at) / (0.22 * in.radius);
-        sum += exp(-dot(away, away));
-    }
-    return 0.25 + 1.6 * sum;
-}
-
-// Two numbers from 0 to 1 that look random.
-fn hash(seed: f32) -> vec2f {
-    return fract(sin(vec2f(seed * 127.1, seed * 311.7) + vec2f(1.7, 4.3)) * 43758.547);
+    return vec4f(in.matter.x * share / abs(slant), in.matter.y * share, share, share);
 }

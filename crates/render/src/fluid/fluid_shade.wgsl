@@ -1,16 +1,16 @@
 // Colour of the fluid: C = a (1 - F) + b F + k_s (n.h)^alpha (flood paper of 2021), a what is seen through it, weakened by its
-// thickness, b what it mirrors, F Fresnel's part, and the sun's highlight after Phong; foam over it.
+// thickness, b what it mirrors, F Fresnel's part, and the sun's highlight after Phong; foam over it. Water that flows has ripples.
 #import fluid
 #import light
+#import ripples
+#import mirror
 
 @group(1) @binding(1) var distances: texture_2d<f32>;
 @group(1) @binding(2) var normals: texture_2d<u32>;
 @group(1) @binding(3) var thickness: texture_2d<f32>;
-@group(1) @binding(4) var behind_colour: texture_2d<f32>;
-@group(1) @binding(5) var behind_depth: texture_depth_2d;
-@group(1) @binding(6) var linear: sampler;
 // Colour; 0 in the last where there is nothing to draw.
 @group(1) @binding(7) var shaded: texture_storage_2d<rgba16float, write>;
+@group(1) @binding(8) var flow: texture_2d<f32>;
 
 // Refractive index of air over that of water, and what water mirrors of light that falls straight on it.
 const INDEX: f32 = 1.0 / 1.333;
@@ -22,6 +22,12 @@ const CLOSED: f32 = 3.1;
 // How well they cover a place (halfway out of a straight shore 1.5) where water begins to be seen, and where
 // nothing else is: shores follow this, not the rims of discs.
 const SHORE: vec2f = vec2f(0.35, 0.65);
+// Wet ground beside water gives back so much less light.
+const WET: f32 = 0.4;
+// Speeds at which ripples begin to be seen and from which they are steepest, m/s.
+const RIPPLED: vec2f = vec2f(0.02, 2.0);
+// Less than this of the light mirrored is not looked up in the picture.
+const LEAST_MIRRORED: f32 = 0.03;
 
 fn unfold(packed: u32) -> vec3f {
     let flat = unpack2x16snorm(packed);
@@ -68,11 +74,22 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         textureStore(shaded, pixel, vec4f(0.0));
         return;
     }
-    let dry = textureLoad(behind_colour, pixel, 0).rgb;
     let uv = (vec2f(pixel) + 0.5) / view.frame.xy;
     let matter = textureSampleLevel(thickness, linear, uv, 0.0);
-    let normal = unfold(textureLoad(normals, pixel, 0).r);
+    let dry = textureLoad(behind_colour, pixel, 0).rgb * (1.0 - WET * smoothstep(0.01, 0.5 * SHORE.x, matter.a));
+    let velocity = textureSampleLevel(flow, linear, uv, 0.0).xy / max(matter.a, 1e-3);
+    let patterns = carried(place.xy, velocity / view.frame.z);
+    let moving = smoothstep(RIPPLED.x, RIPPLED.y, length(velocity));
+    let pixel_here = pixel_at(place);
+    let smooth_normal = unfold(textureLoad(normals, pixel, 0).r);
     let to_eye = towards_eye(place);
+    var normal = smooth_normal;
+    if moving > 0.0 && fluid.ripples.y > 0.0 {
+        // Seen at a grazing angle the sides of ripples that face away are hidden.
+        let facing = clamp(2.5 * dot(smooth_normal, to_eye), 0.0, 1.0);
+        let slope = fluid.ripples.y * moving * facing * ripples(patterns, pixel_here);
+        normal = normalize(smooth_normal - vec3f(slope, 0.0));
+    }
     let cosine = clamp(dot(normal, to_eye), 0.0, 1.0);
     let water = whole_thickness(matter, place);
     // A film so thin that it does not close is not seen.
@@ -81,23 +98,37 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let refracted = refract(-to_eye, normal, INDEX);
     let steep = max(-dot(refracted, normal), 0.1);
     let path = water * cosine / steep;
-    let ground = seen_through(pixel, place, refracted * path / view.frame.z);
+    let shine = sunshine_by(FEW_SHADOW_TAPS, place, normal, vec2f(pixel));
+    var ground = seen_through(pixel, place, refracted * path / view.frame.z);
+    // Waves gather light on the bed where the water is neither a film nor deep.
+    let gathered = shine * sqrt(moving) * (1.0 - exp(-8.0 * path)) * exp(-1.2 * path);
+    if gathered > 0.01 && fluid.ripples.y > 0.0 {
+        let bed = carried(place.xy + refracted.xy * path / view.frame.z, velocity / view.frame.z);
+        ground *= 1.0 + 0.6 * gathered * caustics(bed, pixel_here);
+    }
     // The light that the ground gives back came through the water too.
     let down = max(dot(refract(-view.sun.xyz, normal, INDEX), -normal), 0.3);
     let left = exp(-fluid.absorption.rgb * (path + path * steep / down));
-    let shine = sunshine_by(FEW_SHADOW_TAPS, place, normal, vec2f(pixel));
     let daylight = view.sunlight.rgb * max(dot(normal, view.sun.xyz), 0.0) * shine * 0.4 + light_from_all_round(normal.z);
     let inner = ground * left + fluid.colour.rgb * daylight * (1.0 - left);
 
     let fresnel = mirrored(cosine, STRAIGHT) * closed;
     let back = reflect(-to_eye, normal);
-    let mirror = surroundings(normalize(vec3f(back.xy, abs(back.z))));
+    let upwards = normalize(vec3f(back.xy, abs(back.z)));
+    var mirror = surroundings(upwards);
+    if fresnel > LEAST_MIRRORED {
+        mirror = mirrored_light(place, upwards);
+    }
     let half_way = normalize(view.sun.xyz + to_eye);
     let highlight = fluid.colour.w * pow(max(dot(normal, half_way), 0.0), fluid.surface.x) * shine * closed;
     var colour = inner * (1.0 - fresnel) + mirror * fresnel + highlight * view.sunlight.rgb;
 
     let foam = 1.0 - exp(-fluid.absorption.w * matter.g / max(matter.b, 1e-6));
-    colour = mix(colour, matt(vec3f(0.9), normal, shine), clamp(foam * closed, 0.0, 0.95));
+    if foam > 0.01 {
+        let white = lace(patterns, foam, pixel_here);
+        colour = mix(colour, matt(vec3f(0.9), normal, shine), clamp(white * closed, 0.0, 0.95));
+    }
+    colour = hazed(colour, place);
     let covered = smoothstep(SHORE.x, SHORE.y, matter.a);
     textureStore(shaded, pixel, vec4f(mix(dry, colour, covered), 1.0));
 }

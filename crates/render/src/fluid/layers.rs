@@ -9,6 +9,8 @@ use wgpu::{TextureFormat, TextureUsages as Usage};
 pub(super) const DISTANCE: TextureFormat = TextureFormat::R32Float;
 /// Water, m; foam; what foam is to be divided by; how well particles cover the place.
 pub(super) const THICKNESS: TextureFormat = TextureFormat::Rgba16Float;
+/// Velocity eastwards and northwards, m/s, times how well particles cover the place.
+pub(super) const FLOW: TextureFormat = TextureFormat::Rgba16Float;
 /// A direction, packed.
 pub(super) const NORMAL: TextureFormat = TextureFormat::R32Uint;
 /// Linear light.
@@ -22,6 +24,7 @@ pub(super) struct Layers {
     pub distances: [wgpu::Texture; 2],
     pub nearest: wgpu::Texture,
     pub thickness: wgpu::Texture,
+    pub flow: wgpu::Texture,
     pub normals: wgpu::Texture,
     pub shaded: wgpu::Texture,
     /// Once they are needed.
@@ -63,6 +66,7 @@ impl Layers {
             distances: [distances()?, distances()?],
             nearest: texture("nearest", DEPTH_FORMAT, Usage::RENDER_ATTACHMENT)?,
             thickness: texture_2d(gpu, "thickness", half(size), THICKNESS, drawn)?,
+            flow: texture_2d(gpu, "flow", half(size), FLOW, drawn)?,
             normals: texture("normals", NORMAL, Usage::STORAGE_BINDING | Usage::COPY_SRC)?,
             shaded: texture("shaded", SHADED, Usage::STORAGE_BINDING)?,
             splats: None,

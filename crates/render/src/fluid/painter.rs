@@ -1,6 +1,6 @@
 //! The painter of fluids: pipelines and layouts.
 
-use super::layers::{DISTANCE, THICKNESS};
+use super::layers::{DISTANCE, FLOW, THICKNESS};
 use super::{Fluid, FluidStyle};
 use crate::pipeline::PipelineDescriptor;
 use crate::shaders::Shader;
@@ -124,5 +124,8 @@ fn sprites(gpu: &Gpu, view: &GroupLayout, settings: &GroupLayout) -> [wgpu::Rend
         topology: wgpu::PrimitiveTopology::TriangleStrip,
     };
     let [nearest, added] = SPRITES.map(|(name, text)| Shader::new(name, text));
-    [descriptor("depth", &nearest).nearest(gpu, DISTANCE), descriptor("thickness", &added).added(gpu, THICKNESS)]
+    [
+        descriptor("depth", &nearest).nearest(gpu, DISTANCE),
+        descriptor("thickness", &added).added(gpu, &[THICKNESS, FLOW]),
+    ]
 }

@@ -48,26 +48,23 @@ impl Fluid {
         let painter = &self.painter;
         if let Some(splats) = self.splats(layers) {
             self.splat_into(("nearest", &splats.nearest), &painter.splat_depth, frame);
-            return finish(
-                &painter.splat_nearest,
-                ("nearest", &splats.nearest),
-                ("distances", &layers.distances[0]),
-                frame,
-            );
+            let into = [("distances", &layers.distances[0])];
+            return finish(&painter.splat_nearest, ("nearest", &splats.nearest), &into, frame);
         }
         let depth = whole(&layers.nearest);
         let far = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
         let depth = wgpu::RenderPassDepthStencilAttachment { view: &depth, depth_ops: Some(far), stencil_ops: None };
-        self.draw_sprites(frame, &layers.distances[0], Some(depth), &self.painter.depth);
+        self.draw_sprites(frame, &[&layers.distances[0]], Some(depth), &self.painter.depth);
     }
 
     fn draw_thickness(&self, layers: &Layers, frame: &mut Through<'_>) {
         let painter = &self.painter;
         if let Some(splats) = self.splats(layers) {
             self.splat_into(("sums", &splats.sums), &painter.splat_thickness, frame);
-            return finish(&painter.splat_added, ("sums", &splats.sums), ("thickness", &layers.thickness), frame);
+            let into = [("thickness", &layers.thickness), ("flow", &layers.flow)];
+            return finish(&painter.splat_added, ("sums", &splats.sums), &into, frame);
         }
-        self.draw_sprites(frame, &layers.thickness, None, &self.painter.thickness);
+        self.draw_sprites(frame, &[&layers.thickness, &layers.flow], None, &self.painter.thickness);
     }
 
     /// Draws particles by a compute shader into numbers that are cleared before.
@@ -99,7 +96,7 @@ impl Fluid {
     fn draw_sprites(
         &self,
         frame: &mut Through<'_>,
-        into: &wgpu::Texture,
+        into: &[&wgpu::Texture],
         depth: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
         pipeline: &wgpu::RenderPipeline,
     ) {
@@ -107,14 +104,14 @@ impl Fluid {
         let settings = self.painter.settings.bind(&frame.gpu.device, &[("fluid", settings)]);
         let nothing =
             wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
+        let views: Vec<_> = into.iter().map(|texture| whole(texture)).collect();
+        let attachment = |view| {
+            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops: nothing })
+        };
+        let attachments: Vec<_> = views.iter().map(attachment).collect();
         let mut pass = frame.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("particles"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &whole(into),
-                depth_slice: None,
-                resolve_target: None,
-                ops: nothing,
-            })],
+            color_attachments: &attachments,
             depth_stencil_attachment: depth,
             ..wgpu::RenderPassDescriptor::default()
         });
@@ -176,14 +173,15 @@ impl Fluid {
     }
 
     fn shade(&self, layers: &Layers, frame: &mut Through<'_>) {
-        let read = [self.surface(layers), &layers.normals, &layers.thickness].map(whole);
-        let [distances, normals, thickness] = read.each_ref().map(TextureView);
+        let read = [self.surface(layers), &layers.normals, &layers.thickness, &layers.flow].map(whole);
+        let [distances, normals, thickness, flow] = read.each_ref().map(TextureView);
         let shaded = whole(&layers.shaded);
         let bound = [
             ("fluid", self.settings.as_entire_binding()),
             ("distances", distances),
             ("normals", normals),
             ("thickness", thickness),
+            ("flow", flow),
             ("behind_colour", TextureView(frame.behind_colour)),
             ("behind_depth", TextureView(frame.behind_depth)),
             ("linear", Sampler(&self.painter.sampler)),
@@ -207,15 +205,17 @@ impl Fluid {
     }
 }
 
-/// Makes a texture of what was splatted.
+/// Makes textures of one size of what was splatted.
 fn finish(
     filter: &Filter,
     (name, numbers): (&str, &wgpu::Buffer),
-    (into, texture): (&str, &wgpu::Texture),
+    into: &[(&str, &wgpu::Texture)],
     frame: &mut Through<'_>,
 ) {
-    let view = whole(texture);
-    let bound = [(name, numbers.as_entire_binding()), (into, TextureView(&view))];
+    let views: Vec<_> = into.iter().map(|(name, texture)| (*name, whole(texture))).collect();
+    let mut bound = vec![(name, numbers.as_entire_binding())];
+    bound.extend(views.iter().map(|(name, view)| (*name, TextureView(view))));
+    let texture = into[0].1;
     run(filter, &bound, [texture.width(), texture.height()], frame);
 }
 

@@ -33,6 +33,7 @@ fn droplets() -> Vec<Droplet> {
             volume: 0.05 * 0.05 * 0.3,
             reach: 0.1,
             foam: if x > 0.5 { 0.6 } else { 0.0 },
+            flow: if y > 0.0 { [0.0; 2] } else { [1.0, 0.3] },
             id: index as u64,
         }
     };

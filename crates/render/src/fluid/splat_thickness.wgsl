@@ -8,7 +8,7 @@
 @group(1) @binding(1) var<storage, read> droplets: array<DropletInstance>;
 // How many there are, at SPLAT_COUNT.
 @group(1) @binding(2) var<storage, read> draw_args: array<u32>;
-// Four sums a pixel, and which of them are beyond what they hold.
+// Four sums a pixel, which of them are beyond what they hold, and two sums of the flow that may be below 0.
 @group(1) @binding(3) var<storage, read_write> sums: array<atomic<u32>>;
 
 // Particles of the group that all of its threads draw together.
@@ -32,6 +32,9 @@ fn splat(droplet: DropletInstance, quad: Quad, pixel: vec2i, size: vec2f) {
             }
         }
     }
+    let flow = vec2i(round(clamp(matter.a * droplet.flow, vec2f(-MOST_FLOW), vec2f(MOST_FLOW)) * PER_FLOW));
+    atomicAdd(&sums[first + 5u], bitcast<u32>(flow.x));
+    atomicAdd(&sums[first + 6u], bitcast<u32>(flow.y));
 }
 
 @compute @workgroup_size(SPLAT_GROUP)

@@ -3,6 +3,9 @@
 use crate::Stage;
 use crate::shared::FluidUniforms;
 
+/// m/s2.
+const GRAVITY: f64 = 9.81;
+
 /// Smoothing of the nearest surface of the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Smoothing {
@@ -40,6 +43,10 @@ pub struct FluidStyle {
     pub exponent: f32,
     /// Opacity of foam: 0 draws none.
     pub foam: f32,
+    /// Length of the longest ripples on water that flows, m.
+    pub ripple: f64,
+    /// Steepness of the ripples of fast water: 0 draws none.
+    pub steepness: f32,
     /// South-western and north-eastern corner, m, beyond which it is not drawn: where the ground is cut off, water is too.
     pub within: Option<[[f64; 2]; 2]>,
 }
@@ -59,6 +66,8 @@ impl FluidStyle {
             highlight: 1.2,
             exponent: 240.0,
             foam: 1.5,
+            ripple: 6.0 * radius,
+            steepness: 0.12,
             within: None,
         }
     }
@@ -68,8 +77,14 @@ impl FluidStyle {
         Self { absorption: self.absorption.map(|part| part * times as f32), film: self.film / times, ..self }
     }
 
-    /// The same as shaders have it.
-    pub(super) fn uniforms(&self, stage: &Stage) -> FluidUniforms {
+    /// Time in which a pattern that goes with the water comes and goes, s: that in which water as fast as shallow waves of the ripples' length goes so far
+    /// four times.
+    fn turn(&self) -> f64 {
+        4.0 * (self.ripple / GRAVITY).sqrt()
+    }
+
+    /// The same as shaders have it, at a time, s.
+    pub(super) fn uniforms(&self, stage: &Stage, time: f64) -> FluidUniforms {
         let [red, green, blue] = self.absorption;
         let [own_red, own_green, own_blue] = self.colour;
         let [width, range, rounding] = [self.width, self.range, self.rounding].map(|length| stage.length(length));
@@ -77,12 +92,15 @@ impl FluidStyle {
             Some(corners) => corners.map(|[x, y]| stage.place([x, y, 0.0]).truncate().to_array()),
             None => [[f32::MIN; 2], [f32::MAX; 2]],
         };
+        // Single precision would be coarse after hours: patterns come anew after so many turns.
+        let time = time.rem_euclid(64.0 * self.turn());
         FluidUniforms {
             absorption: [red, green, blue, self.foam],
             colour: [own_red, own_green, own_blue, self.highlight],
             smoothing: [width, range, rounding, self.most_pixels as f32],
             surface: [self.exponent, self.film as f32, 0.0, 0.0],
             within: [west, south, east, north],
+            ripples: [stage.length(self.ripple), self.steepness, time as f32, self.turn() as f32],
         }
     }
 }

@@ -40,7 +40,7 @@ impl Fluid {
             painter,
             stage,
             style,
-            settings: uniform(gpu, "fluid", &style.uniforms(&stage)),
+            settings: uniform(gpu, "fluid", &style.uniforms(&stage, 0.0)),
             along_rows: uniform(gpu, "along rows", &Direction { step: [1, 0], unused: [0; 2] }),
             along_columns: uniform(gpu, "along columns", &Direction { step: [0, 1], unused: [0; 2] }),
             droplets: Vec::new(),
@@ -56,6 +56,11 @@ impl Fluid {
     pub fn fill(&mut self, gpu: &Gpu, droplets: impl IntoIterator<Item = Droplet>) {
         let all: Vec<DropletInstance> = droplets.into_iter().filter_map(|droplet| droplet.drawn(&self.stage)).collect();
         self.droplets = all.chunks(MOST).map(|part| Batch::counted(gpu, part)).collect();
+    }
+
+    /// Sets the time of the picture, s: ripples have moved with the water since.
+    pub fn set_time(&mut self, gpu: &Gpu, time: f64) {
+        gpu.queue.write_buffer(&self.settings, 0, bytemuck::bytes_of(&self.style.uniforms(&self.stage, time)));
     }
 
     /// Replaces the particles by water in GPU memory, in its state when the picture is drawn.

@@ -13,6 +13,8 @@ pub(super) const DISC: f64 = 1.4;
 pub(super) const FLATNESS: f64 = 0.12;
 /// Radius of the neighbour search, and of the spread of a particle's water, in spacings.
 pub(super) const REACH: f64 = 2.0;
+/// Where particles are sparse each is as wide as the water that it stands for, volume over depth; but at most so many times its spacing.
+pub(super) const WIDEST: f64 = 2.5;
 /// Steepest slope of a water surface.
 pub(super) const STEEPEST: f64 = 1.0;
 /// Passes of the limitation of slopes, each over the neighbours of each particle.
@@ -61,12 +63,12 @@ impl Water {
         slope: impl Fn([f64; 2]) -> [f64; 2] + Sync,
     ) -> Vec<Droplet> {
         let depths = set.columns.iter().find(|column| column.name == "depth").map(|column| &column.values);
-        let deep = |index: usize| match depths {
-            Some(Values::Scalar(depths)) => depths[index] > 0.0,
-            _ => false,
+        let depth = |index: usize| match depths {
+            Some(Values::Scalar(depths)) => depths[index],
+            _ => 0.0,
         };
-        let (ground, air): (Vec<usize>, Vec<usize>) = (0..set.len()).partition(|&index| deep(index));
-        let mut droplets = on_ground(set, &ground, slope);
+        let (ground, air): (Vec<usize>, Vec<usize>) = (0..set.len()).partition(|&index| depth(index) > 0.0);
+        let mut droplets = on_ground(set, &ground, depth, slope);
         self.keep_foam(time, &mut droplets);
         droplets.extend(air.into_iter().map(|index| in_air(set, index)));
         droplets
@@ -94,7 +96,12 @@ fn in_air(set: &ParticleSet, index: usize) -> Droplet {
 /// Of water, kg/m3.
 const DENSITY: f64 = 1000.0;
 
-fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Vec<Droplet> {
+fn on_ground(
+    set: &ParticleSet,
+    ground: &[usize],
+    depth: impl Fn(usize) -> f64,
+    slope: impl Fn([f64; 2]) -> [f64; 2] + Sync,
+) -> Vec<Droplet> {
     if ground.is_empty() {
         return Vec::new();
     }
@@ -102,7 +109,9 @@ fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f
         let ([x, y, z], [east, north, _]) = (set.position[index], set.velocity[index]);
         let at = DVec2::new(x, y);
         let ground = slope([x, y]).into();
-        Column { index, spacing: 2.0 * set.radius[index], at, state: DVec3::new(z, east, north), ground }
+        let (spacing, width) = (2.0 * set.radius[index], (set.mass[index] / DENSITY / depth(index)).sqrt());
+        let spacing = width.max(spacing).min(WIDEST * spacing);
+        Column { index, spacing, at, state: DVec3::new(z, east, north), ground }
     };
     let mut columns: Vec<Column> = ground.iter().map(|&index| column(index)).collect();
     let place = |axis: usize| -> Vec<f64> { columns.iter().map(|column| column.at[axis]).collect() };
@@ -161,6 +170,7 @@ fn disc(set: &ParticleSet, cells: &Cells<2>, columns: &[Column], own: &Column) -
         flatness: FLATNESS,
         volume: set.mass[own.index] / DENSITY,
         reach: REACH * own.spacing,
+        flow: [fit.here.y, fit.here.z],
         foam: part(closing, TRAPPED) * part(0.5 * velocity.length_squared(), ENERGY) * part(planes.weight, CLOSED),
         id: set.id[own.index],
     }

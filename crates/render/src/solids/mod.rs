@@ -16,6 +16,8 @@ use corpuscle_model::SolidShape;
 pub enum SolidStyle {
     /// Opaque: colour (sRGB), and how much the surface shines, from 0 to 1.
     Opaque([u8; 3], f32),
+    /// A building of two colours (sRGB), those of its walls and of its roof; windows are hinted where they are seen.
+    Building([u8; 3], [u8; 3]),
     /// Glass: the part of each colour that it lets through straight, sRGB.
     Glass([u8; 3]),
 }
@@ -62,6 +64,22 @@ impl Behind {
     }
 }
 
+impl SolidStyle {
+    /// The same as shaders have it.
+    fn uniforms(self) -> SolidUniforms {
+        let of = |colour: [u8; 3], last: f32| {
+            let [r, g, b] = linear(colour);
+            [r, g, b, last]
+        };
+        let (colour, gloss, roof) = match self {
+            Self::Opaque(colour, gloss) => (colour, gloss, [0.0; 4]),
+            Self::Building(walls, roof) => (walls, 0.1, of(roof, 1.0)),
+            Self::Glass(colour) => (colour, 1.0, [0.0; 4]),
+        };
+        SolidUniforms { colour: of(colour, 1.0), gloss: [gloss, 0.0, 0.0, 0.0], roof }
+    }
+}
+
 impl Solid {
     /// A solid from its shape.
     pub fn new(renderer: &Renderer, stage: &Stage, shape: &SolidShape, style: SolidStyle) -> Self {
@@ -77,12 +95,8 @@ impl Solid {
             Vertex { place: [x, y, z, 1.0], normal: [nx, ny, nz, 0.0] }
         };
         let vertices: Vec<Vertex> = corners.iter().map(vertex).collect();
-        let (colour, gloss, is_glass) = match style {
-            SolidStyle::Opaque(colour, gloss) => (colour, gloss, false),
-            SolidStyle::Glass(colour) => (colour, 1.0, true),
-        };
-        let [r, g, b] = linear(colour);
-        let settings = uniform(gpu, "solid", &SolidUniforms { colour: [r, g, b, 1.0], gloss: [gloss, 0.0, 0.0, 0.0] });
+        let is_glass = matches!(style, SolidStyle::Glass(_));
+        let settings = uniform(gpu, "solid", &style.uniforms());
         let glass = ("glass", include_str!("glass.wgsl"));
         let shader = if is_glass { glass } else { ("solids", include_str!("solids.wgsl")) };
         let layout = shaders::layout(gpu, "solid", 1, &[shader]);

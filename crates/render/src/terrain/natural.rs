@@ -4,7 +4,7 @@ use super::HeightField;
 use corpuscle_gpu::Image;
 
 /// Meadow, dry grass, rock, bare height; sRGB.
-const MEADOW: [f32; 3] = [104.0, 122.0, 66.0];
+const MEADOW: [f32; 3] = [94.0, 108.0, 64.0];
 const GRASS: [f32; 3] = [150.0, 146.0, 92.0];
 const ROCK: [f32; 3] = [128.0, 118.0, 104.0];
 const HEIGHTS: [f32; 3] = [172.0, 162.0, 140.0];

@@ -1,5 +1,6 @@
 // The ground: tiles of a height field, coarser far away, with skirts that hide where two of them meet.
 #import light
+#import noise
 
 @group(1) @binding(0) var<uniform> ground: Ground;
 @group(1) @binding(1) var heights: texture_2d<f32>;
@@ -34,25 +35,6 @@ fn vertex(@builtin(vertex_index) index: u32, @location(0) tile: vec4u) -> Corner
     return Corner(view.clip_from_world * vec4f(place, 1.0), place, uv);
 }
 
-// A number from 0 to 1 for a place (Hoskins, "Hash without sine").
-fn scattered(place: vec3f) -> f32 {
-    let bent = fract(place * 0.1031);
-    let turned = bent + dot(bent, bent.zyx + 31.32);
-    return fract((turned.x + turned.y) * turned.z);
-}
-
-// Smooth noise from 0 to 1 with bumps of length 1. In space, so that it is not drawn out where the ground is steep.
-fn bumps(place: vec3f) -> f32 {
-    let cell = floor(place);
-    let part = smoothstep(vec3f(0.0), vec3f(1.0), place - cell);
-    var along = array(0.0, 0.0, 0.0, 0.0);
-    for (var k = 0u; k < 4u; k++) {
-        let corner = cell + vec3f(0.0, f32(k % 2u), f32(k / 2u));
-        along[k] = mix(scattered(corner), scattered(corner + vec3f(1.0, 0.0, 0.0)), part.x);
-    }
-    return mix(mix(along[0], along[1], part.y), mix(along[2], along[3], part.y), part.z);
-}
-
 // Steeper than this no ground is: a quad whose corners have no height is marked so.
 const NO_GROUND: f32 = 50.0;
 
@@ -66,13 +48,57 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     if slope.x > NO_GROUND {
         discard;
     }
-    let normal = normalize(vec3f(-slope, 1.0));
-    let shine = sunshine(corner.place, normal, corner.clip.xy);
-    // Grain finer than the cells, as far as pixels show it.
-    let cells = (corner.place - vec3f(ground.origin.xy, 0.0)) / ground.cell.x;
-    let fine = clamp(ground.cell.x / pixel_at(corner.place) / 8.0 - 0.25, 0.0, 1.0);
-    let grain = 1.0 + ground.cell.w * fine * (bumps(cells * 3.1) + bumps(cells * 7.3) - 1.0);
-    return vec4f(matt(found.rgb * grain, normal, shine), 1.0);
+    let smooth_normal = normalize(vec3f(-slope, 1.0));
+    if ground.cell.w == 0.0 {
+        return vec4f(hazed(matt(found.rgb, smooth_normal, sunshine(corner.place, smooth_normal, corner.clip.xy)), corner.place), 1.0);
+    }
+    let own = natural(corner.place, found.rgb, length(slope), smooth_normal);
+    let shine = sunshine(corner.place, smooth_normal, corner.clip.xy);
+    return vec4f(hazed(matt(own.colour, own.normal, shine), corner.place), 1.0);
+}
+
+// Bare rock and earth, linear.
+const ROCK: vec3f = vec3f(0.23, 0.20, 0.165);
+const EARTH: vec3f = vec3f(0.145, 0.115, 0.06);
+// Slopes at which rock begins to show and from which there is nothing else.
+const STEEP: vec2f = vec2f(0.5, 1.0);
+// Octaves of the grain, the longest of which is so many cells long.
+const OCTAVES: i32 = 6;
+const LONGEST: f32 = 6.0;
+
+// What the ground is made of at a place.
+struct Matter {
+    colour: vec3f,
+    normal: vec3f,
+}
+
+// Natural ground of a colour: patches of another green and bare earth, rock where it is steep, and grain as fine as pixels show it.
+fn natural(place: vec3f, colour: vec3f, steepness: f32, smooth_normal: vec3f) -> Matter {
+    let pixel = pixel_at(place);
+    var length = LONGEST * ground.cell.x;
+    var tilt = vec3f(0.0);
+    // Of long and of short octaves, about 0.
+    var patches = 0.0;
+    var grain = 0.0;
+    for (var octave = 0; octave < OCTAVES; octave++) {
+        let seen = clamp(length / pixel / 3.0 - 0.6, 0.0, 1.0);
+        if seen > 0.0 {
+            let found = bumps_in_space((place - vec3f(ground.origin.xy, 0.0)) / length + 17.0 * f32(octave));
+            tilt += seen * found.xyz;
+            let about = seen * (found.w - 0.5);
+            patches += select(0.0, about, octave < 3);
+            grain += select(about, 0.0, octave < 2);
+        }
+        length *= 0.45;
+    }
+    let green = colour * (1.0 + ground.cell.w * grain) * mix(vec3f(1.12, 1.02, 0.86), vec3f(0.80, 0.94, 0.82), smoothstep(-0.5, 0.5, patches));
+    // Where patches and grain agree the turf is worn.
+    let bare = smoothstep(0.50, 0.90, patches + 0.6 * grain);
+    let grown = mix(green, EARTH * (1.0 + grain), 0.75 * bare);
+    let rocky = smoothstep(STEEP.x, STEEP.y, steepness + 0.35 * patches + 0.25 * grain);
+    let strength = mix(0.09, 0.22, rocky);
+    let normal = normalize(smooth_normal - strength * (tilt - dot(tilt, smooth_normal) * smooth_normal));
+    return Matter(mix(grown, ROCK * (1.0 + 0.9 * grain), rocky), normal);
 }
 
 // The same without shadows and grain.
@@ -83,7 +109,7 @@ fn fragment_plain(corner: Corner) -> @location(0) vec4f {
     if found.a < 0.5 || slope.x > NO_GROUND {
         discard;
     }
-    return vec4f(matt(found.rgb, normalize(vec3f(-slope, 1.0)), 1.0), 1.0);
+    return vec4f(hazed(matt(found.rgb, normalize(vec3f(-slope, 1.0)), 1.0), corner.place), 1.0);
 }
 
 @fragment

@@ -9,7 +9,7 @@ use crate::Error;
 use crate::models::dew::shows_air;
 use corpuscle_drawing::text;
 use corpuscle_model::{ParticleSet, Surface, Values};
-use corpuscle_render::{Axes, Cap, Drawable, Floor, Light, Overlay, Solid, SolidStyle, Stage};
+use corpuscle_render::{Axes, Cap, Drawable, Floor, FogPatch, Light, Overlay, Solid, SolidStyle, Stage};
 use corpuscle_scene::Dew;
 use corpuscle_scene::dew::Material;
 use section::SectionPicture;
@@ -100,15 +100,19 @@ impl Room {
         let camera = context.camera(&self.stage, &own, moment.frame.time);
         let light = context.lit(Light::dim_room().from_azimuth(self.azimuth + SUN));
         let drops: Vec<Cap> = moment.frame.sets.iter().filter(|set| set.name == "drops").flat_map(caps).collect();
-        let faces_eye = |cap: &&Cap| {
+        let faces = |normal: [f64; 3], position: [f64; 3]| {
             let eye: [f64; 3] = camera.eye.into();
-            (0..3).map(|k| cap.normal[k] * (eye[k] - cap.position[k])).sum::<f64>() > 0.0
+            (0..3).map(|k| normal[k] * (eye[k] - position[k])).sum::<f64>() > 0.0
         };
+        let faces_eye = |cap: &&Cap| faces(cap.normal, cap.position);
         let gpu = context.renderer.gpu();
         // Drops on the far side are seen through the solid, so they are drawn before it.
         let far = drops.iter().filter(|cap| !faces_eye(cap)).copied();
-        let mut far = context.caps.caps(gpu, &self.stage, far);
-        let mut near = context.caps.caps(gpu, &self.stage, drops.iter().filter(faces_eye).copied());
+        let mut far = context.caps.caps(gpu, &self.stage, far, []);
+        let near = drops.iter().filter(faces_eye).copied();
+        let fog = moment.frame.sets.iter().filter(|set| set.name == "unseen").flat_map(fog);
+        let mut near =
+            context.caps.caps(gpu, &self.stage, near, fog.filter(|patch| faces(patch.normal, patch.position)));
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.floor, &mut far];
         things.extend(self.solids.iter_mut().map(|solid| solid as &mut dyn Drawable));
         things.push(&mut near);
@@ -149,6 +153,22 @@ fn wet_side(surfaces: &[Surface]) -> f64 {
     }
     let area: f64 = surfaces.iter().flat_map(|surface| &surface.half_width).map(|half| half * half).sum();
     if sum[0].hypot(sum[1]) > 0.2 * area { sum[1].atan2(sum[0]) } else { NO_SIDE }
+}
+
+/// The patches with unseen drops of a set.
+fn fog(set: &ParticleSet) -> Vec<FogPatch> {
+    let column = |name: &str| set.columns.iter().find(|column| column.name == name).map(|column| &column.values);
+    let (Some(Values::Scalar(parts)), Some(Values::Vector(normals))) = (column("covered_part"), column("normal"))
+    else {
+        return Vec::new();
+    };
+    let patch = |at: usize| FogPatch {
+        position: set.position[at],
+        half_width: set.radius[at],
+        normal: normals[at],
+        covered: parts[at],
+    };
+    (0..set.len()).map(patch).collect()
 }
 
 /// The drops of a set.

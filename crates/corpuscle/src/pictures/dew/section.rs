@@ -95,7 +95,7 @@ impl SectionPicture {
                 context.balls.balls(gpu, &stage, &style, air)
             }
         };
-        let mut drops = context.caps.caps(gpu, &stage, sets("drops").flat_map(caps));
+        let mut drops = context.caps.caps(gpu, &stage, sets("drops").flat_map(caps), []);
         let overlay = self.section.overlay(title, moment.frame.time);
         let mut things: Vec<&mut dyn Drawable> = vec![&mut air];
         things.extend(self.solids.iter_mut().map(|solid| solid as &mut dyn Drawable));

@@ -19,6 +19,8 @@ corpuscle_gpu::declare! {
         pub const DISC: f32 = water::DISC as f32;
         /// Their thickness over their width.
         pub const FLATNESS: f32 = water::FLATNESS as f32;
+        /// Largest width of a particle's water over its spacing.
+        pub const WIDEST: f32 = water::WIDEST as f32;
         /// Steepest slope of a water surface.
         pub const STEEPEST: f32 = water::STEEPEST as f32;
         /// Least second moment of neighbours for a fitted plane, in squares of their distance.

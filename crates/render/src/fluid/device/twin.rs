@@ -108,6 +108,7 @@ fn compare(device: &[DropletInstance], host: &[DropletInstance]) {
         assert!(apart(&one.matter[1..2], &other.matter[1..2]) < LIKE, "{one:?} {other:?}");
         assert!((one.matter[0] - other.matter[0]).abs() <= 1e-5 * other.matter[0], "{one:?} {other:?}");
         assert!(apart(&one.matter[2..], &other.matter[2..]) < NEAR, "{one:?} {other:?}");
+        assert!(apart(&one.flow, &other.flow) < LIKE, "{one:?} {other:?}");
     }
 }
 

@@ -25,7 +25,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let particle = seen.all[order[i]];
     let place = vec3f(particle.place.xy, water.raise * particle.place.z) + water.shift;
-    sites[i] = vec4f(place, particle.spacing);
+    // As wide as the water that it stands for where particles are sparse.
+    let width = sqrt(particle.volume / max(particle.depth, 1e-12));
+    sites[i] = vec4f(place, clamp(width, particle.spacing, WIDEST * particle.spacing));
     motions[i] = vec4f(particle.velocity.xy, ground_slope(place.xy));
     matter[i] = vec4u(bitcast<u32>(particle.volume), particle.id, bitcast<vec2u>(particle.velocity.xy));
 }

@@ -5,8 +5,8 @@
 
 // Foam on particles in the air.
 const SPRAY = 0.15;
-// Ids by which patterns of foam differ.
-const PATTERNS = 4096u;
+// Numbers that tests tell particles apart by.
+const NUMBERS = 4096u;
 
 // Linear step between two values: 0 at the first, 1 at the second.
 fn part(value: f32, between: vec2f) -> f32 {
@@ -17,14 +17,14 @@ fn volume(i: u32) -> f32 {
     return bitcast<f32>(matter[i].x);
 }
 
-fn pattern(i: u32) -> f32 {
-    return f32(matter[i].y % PATTERNS);
+fn numbered(i: u32) -> f32 {
+    return f32(matter[i].y % NUMBERS);
 }
 
 fn in_air(i: u32) -> DropletInstance {
     let radius = water.unit * pow(0.75 * volume(i) / PI, 1.0 / 3.0);
     let place = water.unit * sites[i].xyz;
-    return DropletInstance(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY, radius, pattern(i)));
+    return DropletInstance(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY, radius, numbered(i)), vec2f(0.0), vec2f(0.0));
 }
 
 // Whether a place is no farther than that from a border of the ground, m.
@@ -56,7 +56,9 @@ fn disc(i: u32) -> DropletInstance {
         water.unit * radius,
         normal,
         FLATNESS,
-        vec4f(depth, 0.0, water.unit * reach, pattern(i)),
+        vec4f(depth, 0.0, water.unit * reach, numbered(i)),
+        fit.here.yz,
+        vec2f(0.0),
     );
 }
 
