@@ -256,6 +256,26 @@ fn momentum_that_films_cannot_carry_is_in_the_ledger() {
     }
 }
 
+/// A line with a crest that crosses itself encloses a triangle of one cell; the water that comes in over the crest comes to rest there.
+#[test]
+fn water_in_a_cell_that_walls_enclose_comes_to_rest() {
+    let scene = r#"
+        run.until_s = 60
+        terrain.valley = { extent = { length_m = 60, width_m = 60, cell_m = 5 }, channel_depth_m = 0.49, channel_width_m = 10, hills_m = 0.49, meander_length_m = 40, meander_m = 5, plain_width_m = 15, slope = 0.0392 }
+        [flood]
+        spacing_m = 3
+        manning = 0.03
+        water = [{ depth_m = 1 }]
+        obstacle = [{ name = "fold", crest_m = 1.05, line = [[20.8, 54.3], [21.2, 21.8], [18.3, 27.1], [33.3, 11.6]] }]
+        "#;
+    for seed in [1, 2, 3] {
+        let mut flood = flood(scene, seed);
+        flood.advance_to(8.0, &AtomicBool::new(false)).unwrap();
+        let fastest = flood.solver.water.iter().map(Water::speed).fold(0.0, f64::max);
+        assert!(fastest < 4.0, "seed {seed}: {fastest} m/s");
+    }
+}
+
 /// Rain has left a film on ground below the level that a part of the side holds.
 #[test]
 fn a_held_level_floods_land_with_a_film_on_it() {

@@ -20,9 +20,6 @@ const LONGEST: Duration = Duration::from_secs(6);
 /// Largest error of a ledger, over the magnitudes of what it accounts for.
 const LEDGER: f64 = 1e-8;
 
-/// The same for momentum of water, of which less is exact: rain and blocks that land are booked apart from what moves them.
-const MOMENTUM: f64 = 1e-5;
-
 /// Fastest water in a lake that began at rest, m/s.
 const AT_REST: f64 = 1e-6;
 
@@ -159,8 +156,7 @@ fn check(expected: &Expected, model: &dyn Model) -> Result<(), Trial> {
             _ => true,
         };
         let error = if is_exact { balance.relative_error() } else { 0.0 };
-        let is_of_water = balance.quantity == "momentum" && expected.kind != Kind::Gas;
-        if error.is_nan() || error.abs() > if is_of_water { MOMENTUM } else { LEDGER } {
+        if error.is_nan() || error.abs() > LEDGER {
             return Err(finding(&format!("ledger of {}", balance.quantity), format!("{at}: {balance:?}, {error:.3e}")));
         }
     }

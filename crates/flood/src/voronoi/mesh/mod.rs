@@ -516,9 +516,13 @@ impl Mesh {
     }
 
     /// Finds the factors of the least-squares gradient of a cell: weights length over distance. Mirror images behind walls count; where the
-    /// border is open there is none.
+    /// border is open there is none. A cell that walls enclose has no slopes: of mirror images alone they would turn its velocity round at its faces, and the walls
+    /// would drive the water on.
     fn fit_gradient(&mut self, cell: usize, ground: &impl Ground) {
         let [first, end] = [0, 1].map(|next| self.first_link[cell + next] as usize);
+        if self.links[first..end].iter().all(|link| link.cell().is_none()) {
+            return;
+        }
         let [mut xx, mut xy, mut yy] = [0.0; 3];
         let vector = |mesh: &Self, link: &Link| {
             let face = (link.face != NONE).then(|| &mesh.faces[link.face as usize])?;
