@@ -140,7 +140,10 @@ fn dew_on_the_gpu_shows_its_drops_and_where_air_is_seen_the_air() {
         };
         stage.until(SOON, "it goes on", later);
         let now = stage.window().snapshot().unwrap();
-        assert!(now.on_device.is_some() == sees_air && now.frame.sets.iter().all(|set| set.name == "drops"));
+        assert!(
+            now.on_device.is_some() == sees_air
+                && now.frame.sets.iter().all(|set| ["drops", "unseen"].contains(&set.name.as_str()))
+        );
         assert!(now.particles > 300 && Arc::ptr_eq(&now.known, &first.known));
         stage.picture(if sees_air { "gpu-air" } else { "gpu-pane" });
         stage.click("Pause");

@@ -148,7 +148,7 @@ impl Model for Dew {
     fn frame(&self) -> Frame {
         let air = self.shows.air.then(|| self.air_set());
         let solid = self.shows.solids.then(|| self.solid_set());
-        let drops = self.wetting.iter().flat_map(|wetting| [wetting.set(), wetting.unseen_set()]);
+        let drops = self.wetting.iter().flat_map(Wetting::sets);
         Frame { time: self.shown, sets: air.into_iter().chain(solid).chain(drops).collect() }
     }
 

@@ -232,8 +232,13 @@ impl Wetting {
         }
     }
 
+    /// All that is shown of it: the drops, and the patches with unseen ones.
+    pub fn sets(&self) -> [ParticleSet; 2] {
+        [self.set(), self.unseen_set()]
+    }
+
     /// The patches with drops too small to be followed one by one, as particles: middle and half width of each, and their water.
-    pub fn unseen_set(&self) -> ParticleSet {
+    fn unseen_set(&self) -> ParticleSet {
         let (patches, unseen) = (self.drops.patches(), |patch: usize| self.drops.unseen_on(patch, &self.shares[patch]));
         let wet: Vec<(usize, Unseen)> = (0..patches.len())
             .map(|patch| (patch, unseen(patch)))
@@ -261,7 +266,7 @@ impl Wetting {
     }
 
     /// The drops as particles: middle and radius of the disk that each covers.
-    pub fn set(&self) -> ParticleSet {
+    fn set(&self) -> ParticleSet {
         let drops = self.drops.drops();
         ParticleSet {
             name: "drops".into(),

@@ -79,7 +79,8 @@ fn frames_show_air_solids_and_drops() {
         }
     }
     let shown = "output = { air = false, solids = false }\n[dew.faces]";
-    assert_eq!(self::dew(&PANE.replace("[dew.faces]", shown)).frame().sets.len(), 1);
+    let shown = self::dew(&PANE.replace("[dew.faces]", shown)).frame();
+    assert_eq!(shown.sets.iter().map(|set| set.name.as_str()).collect::<Vec<_>>(), ["drops", "unseen"]);
 }
 
 #[test]

@@ -22,10 +22,10 @@ impl Dew {
         else {
             return Ok(());
         };
-        let drops = self.wetting.as_ref().map(Wetting::set);
+        let drops = self.wetting.iter().flat_map(Wetting::sets);
         let solver = self.gpu_solver.as_ref().filter(|_| frame_request.sees_air);
         let air = solver.map(|solver| solver.seen(self.scale().spacing, self.since())).transpose()?;
-        let frame = Frame { time: self.shown, sets: drops.into_iter().collect() };
+        let frame = Frame { time: self.shown, sets: drops.collect() };
         let next = (frame_request.show)(Glance { frame, on_device: air });
         frame_request.wanted = next.max(self.shown + self.state.time_step);
         Ok(())
