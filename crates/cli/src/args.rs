@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use corpuscle::output::FrameFormat;
+use corpuscle::pictures::Sun;
 use corpuscle::terrain::MapBox;
 use std::path::PathBuf;
 
@@ -287,12 +288,28 @@ pub struct PictureOptions {
     /// Moving camera: a table with columns time_s, bearing_deg, height_deg, zoom and, for another centre, x and y
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["camera", "from", "centre", "zoom"])]
     pub camera_path: Option<PathBuf>,
-    /// Surface of the terrain of a flood: natural colours, water depth, or a picture (PNG) that covers it from corner to corner
+    /// Surface of the terrain of a flood: natural colours, water depth, or a picture (PNG) that covers it from corner to corner or has a world file
     #[arg(long, value_name = "natural|depth|FILE.png", default_value = "natural")]
     pub ground: String,
     /// Exaggeration of the heights of a flood
     #[arg(long, value_name = "N", value_parser = times, default_value = "1")]
     pub heights: f64,
+    /// Colour of the water of a flood: clear as a mountain river, blue as a lake, or brown with soil
+    #[arg(long, value_enum, default_value = "blue")]
+    pub water: Water,
+    /// Sun over a flood: bearing from north and height, degrees, or a time in UTC at which it stands over the terrain as it does, as in 2026-06-21T15:00Z [default: beside the camera]
+    #[arg(long, value_name = "BEARING,HEIGHT|TIME", allow_hyphen_values = true)]
+    pub sun: Option<Sun>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Water {
+    /// Clear as a mountain river
+    Clear,
+    /// Blue as a lake
+    Blue,
+    /// Brown with soil
+    Brown,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

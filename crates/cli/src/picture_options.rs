@@ -1,9 +1,9 @@
 //! Settings of pictures from the options of `run` and `render`.
 
-use crate::args::{CameraKind, PictureOptions};
+use crate::args::{CameraKind, PictureOptions, Water};
 use crate::refusal::refuse;
 use anyhow::Result;
-use corpuscle::pictures::{GroundStyle, PictureSettings, Viewpoint};
+use corpuscle::pictures::{GroundStyle, PictureSettings, Viewpoint, WaterColour};
 use corpuscle::{CameraStation, camera_path};
 use std::path::Path;
 
@@ -18,7 +18,13 @@ pub fn picture_settings(size: [u32; 2], samples: u32, options: &PictureOptions) 
         "depth" => GroundStyle::Depth,
         file => GroundStyle::Picture(file.into()),
     };
-    Ok(PictureSettings { size, samples, viewpoints, ground, heights: options.heights })
+    let water = match options.water {
+        Water::Clear => WaterColour::Clear,
+        Water::Blue => WaterColour::Blue,
+        Water::Brown => WaterColour::Brown,
+    };
+    let sun = options.sun.unwrap_or_default();
+    Ok(PictureSettings { size, samples, viewpoints, ground, heights: options.heights, water, sun })
 }
 
 fn viewpoint(options: &PictureOptions) -> Viewpoint {

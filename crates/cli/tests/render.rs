@@ -53,7 +53,7 @@ fn a_flood_is_drawn_from_where_one_wants_and_with_what_one_wants_on_its_ground()
     let small = ["render", "run", "--at", "0", "--size", "160x90", "--samples", "1"];
     place.run(&small).expect_status(0);
     fs::rename(place.path("run/pictures/picture_000000.png"), place.path("photo.png")).unwrap();
-    let looks: [&[&str]; 8] = [
+    let looks: [&[&str]; 10] = [
         &[],
         &["--camera", "plan"],
         &["--from", "20,50"],
@@ -62,6 +62,8 @@ fn a_flood_is_drawn_from_where_one_wants_and_with_what_one_wants_on_its_ground()
         &["--ground", "depth"],
         &["--ground", "photo.png"],
         &["--heights", "3"],
+        &["--water", "brown"],
+        &["--sun", "250,20"],
     ];
     let drawn = looks.map(|look| {
         place.run(&[&small, look].concat()).expect_status(0);
@@ -88,12 +90,17 @@ fn ways_to_look_that_cannot_be_are_refused_in_words() {
     refused(["--from", "20,95"], "89");
     refused(["--zoom", "0"], "0.01");
     refused(["--look", "nan,1"], "500,320");
+    refused(["--sun", "250,1"], "135,40");
+    refused(["--sun", "noon"], "2026-06-21T15:00Z");
+    refused(["--water", "green"], "brown");
     refused(["--camera-path", "header.csv"], "bearing_deg");
     refused(["--camera-path", "row.csv"], "line 2");
     refused(["--camera-path", "none.csv"], "none.csv");
     if has_device("a picture for the ground") {
         refused(["--ground", "photo.png"], "PNG");
         refused(["--ground", "none.png"], "none.png");
+        // The lake has no place on Earth.
+        refused(["--sun", "2026-06-21T12:00Z"], "--sun 135,40");
     }
 }
 

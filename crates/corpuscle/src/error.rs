@@ -41,6 +41,10 @@ pub enum Error {
         /// What is wrong.
         what: String,
     },
+    /// Where the sun is to stand in pictures.
+    #[cfg(feature = "pictures")]
+    #[error("{0}")]
+    Sun(String),
     /// The film.
     #[cfg(feature = "film")]
     #[error(transparent)]
@@ -59,7 +63,7 @@ impl Error {
                 matches!(error, corpuscle_render::RenderError::Gpu(corpuscle_gpu::GpuError::TooLarge { .. }))
             }
             #[cfg(feature = "pictures")]
-            Self::GroundPicture { .. } => true,
+            Self::GroundPicture { .. } | Self::Sun(_) => true,
             #[cfg(feature = "film")]
             Self::Film(error) => {
                 !matches!(error, corpuscle_video::FilmError::Write { .. } | corpuscle_video::FilmError::Encoder { .. })

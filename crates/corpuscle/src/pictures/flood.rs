@@ -1,9 +1,10 @@
 //! Pictures of a flood: water on a block of terrain.
 
-use super::ground_style::{self, DepthClasses};
+use super::ground_style::DepthClasses;
 use super::lines::plates;
+use super::photo;
 use super::times::Times;
-use super::{DrawContext, GroundStyle, Moment, OwnView, Quality, Shown, Subject};
+use super::{DrawContext, GroundStyle, Moment, OwnView, PictureSettings, Quality, Shown, Subject, WaterColour};
 use crate::Error;
 use corpuscle_drawing::colour::split;
 use corpuscle_drawing::text;
@@ -71,6 +72,8 @@ pub(crate) struct FloodPicture {
     blues: ColourTable,
     /// Exaggeration of heights.
     heights: f64,
+    water_colour: WaterColour,
+    light: Light,
 }
 
 impl Subject for FloodPicture {
@@ -78,7 +81,7 @@ impl Subject for FloodPicture {
         let gpu = context.renderer.gpu();
         let camera = context.camera(&self.stage, &OWN_VIEW, moment.frame.time);
         let is_plan = matches!(camera.lens, Lens::Orthographic { .. });
-        let light = context.lit(Light::day().from_azimuth(DIRECTION[0] + SUN));
+        let light = context.lit(self.light);
         let is_of_frame = |set: &&ParticleSet| !set.is_empty() && (moment.on_device.is_none() || self.depth.is_some());
         let sets: Vec<ParticleSet> =
             moment.frame.sets.iter().filter(is_of_frame).map(|set| raised(set, self.heights)).collect();
@@ -137,9 +140,10 @@ impl FloodPicture {
         context: &DrawContext,
         settings: &Settings,
         ground: &Ground,
-        ground_style: GroundStyle,
-        heights: f64,
+        picture: &PictureSettings,
     ) -> Result<Self, Error> {
+        let PictureSettings { ground: ground_style, heights, .. } = picture;
+        let heights = *heights;
         let bounds = ground.bounds();
         let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
         let field = height_field(ground, heights, MOST_NODES);
@@ -161,8 +165,8 @@ impl FloodPicture {
             buildings.push(Solid::of_corners(&context.renderer, &stage, &corners, SolidStyle::Opaque(WALLS, 0.1)));
         }
         let mut mesh = Terrain::new(&context.renderer, &stage, field.clone(), &colours, base)?;
-        if let GroundStyle::Picture(path) = &ground_style {
-            mesh.drape(context.renderer.gpu(), &ground_style::picture(path)?)?;
+        if let GroundStyle::Picture(path) = ground_style {
+            mesh.drape(context.renderer.gpu(), &photo::photo(path, ground, &colours)?)?;
         }
         let depth = usual_depth(settings, ground, Path::new(""))?;
         Ok(Self {
@@ -178,9 +182,11 @@ impl FloodPicture {
             fluid: None,
             splats: false,
             turbid: (CLEAR / depth).clamp(TURBID[0], TURBID[1]),
-            depth: (ground_style == GroundStyle::Depth).then(|| DepthClasses::about(depth, settings.wet_depth_m)),
+            depth: (*ground_style == GroundStyle::Depth).then(|| DepthClasses::about(depth, settings.wet_depth_m)),
             blues: blues(depth),
             heights,
+            water_colour: picture.water,
+            light: picture.sun.light(Light::day(), DIRECTION[0] + SUN, ground)?,
         })
     }
 
@@ -191,7 +197,7 @@ impl FloodPicture {
         let Self { stage, field, .. } = self;
         let (gpu, time) = (context.renderer.gpu(), moment.frame.time);
         let within = Some([stage.from, stage.to].map(|corner| [corner.x, corner.y]));
-        let style = || FluidStyle { within, ..FluidStyle::water(radius).turbid(self.turbid) };
+        let style = || FluidStyle { within, ..self.water_colour.style(radius).turbid(self.turbid) };
         // Its style is that of the first particles there are, so that it does not change in a film.
         let fluid = self.fluid.get_or_insert_with(|| context.fluids.fluid(gpu, stage, style()));
         fluid.splat(self.splats);

@@ -1,12 +1,9 @@
 //! Surface of the terrain of a flood: natural colours, a map of the depth, or a picture of the user.
 
-use crate::Error;
-use corpuscle_drawing::png::decode_rgba;
 use corpuscle_gpu::Image;
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{HeightField, natural_colours};
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Style of the surface of a flood's terrain.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -16,7 +13,7 @@ pub enum GroundStyle {
     Natural,
     /// A map of the depth in classes of colour.
     Depth,
-    /// A picture in a PNG file, an aerial photo for one, which covers the ground from corner to corner, north up.
+    /// A picture in a PNG file, an aerial photo for one, which covers the ground from corner to corner, north up, or lies where a world file beside it says.
     Picture(PathBuf),
 }
 
@@ -163,14 +160,6 @@ impl DepthGrid {
         let weight = self.weights[index];
         (weight > COVERED).then(|| f64::from(self.sums[index] / weight))
     }
-}
-
-/// A picture from a PNG file.
-pub(super) fn picture(path: &Path) -> Result<Image, Error> {
-    let wrong = |what: String| Error::GroundPicture { path: path.into(), what };
-    let bytes = fs::read(path).map_err(|error| wrong(error.to_string()))?;
-    let (width, height, rgba) = decode_rgba(&bytes).map_err(wrong)?;
-    Ok(Image { width, height, rgba })
 }
 
 #[cfg(test)]

@@ -9,12 +9,15 @@ pub(crate) mod gas;
 mod ground_style;
 mod lines;
 mod particles;
+mod photo;
 mod scenery;
 mod show;
 mod sketch;
 mod subject;
+mod sunlight;
 mod times;
 mod viewpoint;
+mod water_colour;
 
 use crate::{Error, Simulation, models};
 pub use camera_offset::CameraOffset;
@@ -34,8 +37,10 @@ pub use scenery::Scenery;
 pub use show::{Quality, Shown};
 pub use sketch::{Disc, GroundMap, Line, Patch, Sketch, SketchView, Sketcher, Sketches};
 pub use subject::Subject;
+pub use sunlight::Sun;
 pub use viewpoint::Viewpoint;
 use viewpoint::{OwnView, Station};
+pub use water_colour::WaterColour;
 
 /// Settings of pictures.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,11 +56,23 @@ pub struct PictureSettings {
     pub ground: GroundStyle,
     /// Exaggeration of the heights of a flood.
     pub heights: f64,
+    /// Colour of the water of a flood.
+    pub water: WaterColour,
+    /// Where the sun stands over a flood.
+    pub sun: Sun,
 }
 
 impl Default for PictureSettings {
     fn default() -> Self {
-        Self { size: [1920, 1080], samples: 2, viewpoints: Vec::new(), ground: GroundStyle::Natural, heights: 1.0 }
+        Self {
+            size: [1920, 1080],
+            samples: 2,
+            viewpoints: Vec::new(),
+            ground: GroundStyle::Natural,
+            heights: 1.0,
+            water: WaterColour::default(),
+            sun: Sun::default(),
+        }
     }
 }
 
@@ -132,7 +149,7 @@ impl Pictures {
     /// [`Error::Render`] where the pictures are larger than the device can hold.
     pub fn of_flood(gpu: &Gpu, flood: &Flood, ground: &Terrain, settings: PictureSettings) -> Result<Self, Error> {
         let context = DrawContext::new(gpu, &settings, Some(ground))?;
-        let flood = FloodPicture::new(&context, flood, ground, settings.ground, settings.heights)?;
+        let flood = FloodPicture::new(&context, flood, ground, &settings)?;
         Ok(Self { context, title: String::new(), subject: Box::new(flood) })
     }
 

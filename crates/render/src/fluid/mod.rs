@@ -3,10 +3,10 @@
 //!
 //! ```text
 //! depth      particles as sprites, the nearest surface of them          fluid_depth.wgsl
-//! thickness  the same, added up: water and foam in a line of sight      fluid_thickness.wgsl
+//! thickness  the same, added up: water, foam and flow in a line of sight fluid_thickness.wgsl
 //! smoothing  narrow-range or bilateral filter of depth                  narrow_range.wgsl, bilateral.wgsl
 //! normals    from the smoothed depth                                    fluid_normals.wgsl
-//! shading    refraction, mirror, highlight, foam                        fluid_shade.wgsl
+//! shading    ripples, refraction, mirror, highlight, foam               fluid_shade.wgsl, ripples.wgsl, mirror.wgsl
 //! composing  into the picture, where it is not hidden                   fluid_compose.wgsl
 //! ```
 //!

@@ -301,6 +301,18 @@ mod tests {
     }
 
     #[test]
+    fn sparse_particles_are_as_wide_as_the_water_that_they_stand_for() {
+        let mut set = tilted(|_| [0.0; 3]);
+        let radius = |set: &ParticleSet| Water::default().droplets(0.0, set, LEVEL_GROUND)[0].radius;
+        assert!((radius(&set) - DISC).abs() < 1e-12);
+        // A cubic metre that is 0.25 m deep covers 4 m2; of a film no more is drawn than so many spacings.
+        for (depth, width) in [(0.25, 2.0), (0.01, WIDEST), (4.0, 1.0)] {
+            set.columns[0].values = Values::Scalar(vec![depth; 400]);
+            assert!((radius(&set) - width * DISC).abs() < 1e-12, "{depth}");
+        }
+    }
+
+    #[test]
     fn what_stands_steeper_than_water_can_is_taken_down() {
         let mut set = tilted(|_| [0.0; 3]);
         for index in [209, 210, 229, 230] {
