@@ -107,6 +107,11 @@ impl Light {
         self.is_lit() && self.shadows
     }
 
+    /// True where the backdrop is drawn, not one colour: without shadows only that of a room, which its floor shows too.
+    pub(crate) fn draws_backdrop(&self) -> bool {
+        self.throws_shadows() || matches!(self.backdrop, Backdrop::Room { .. })
+    }
+
     /// True where things are lit, not drawn in flat colours.
     pub fn is_lit(&self) -> bool {
         !matches!(self.backdrop, Backdrop::Paper(_))

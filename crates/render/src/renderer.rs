@@ -169,7 +169,7 @@ impl Renderer {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, &view.group, &[]);
-        if cleared && light.throws_shadows() {
+        if cleared && light.draws_backdrop() {
             pass.set_pipeline(&self.backdrop);
             pass.draw(0..3, 0..1);
         }
