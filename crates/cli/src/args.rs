@@ -242,6 +242,42 @@ pub struct RenderOptions {
     pub samples: u32,
     #[command(flatten)]
     pub picture: PictureOptions,
+    #[command(flatten)]
+    pub figure: FigureOptions,
+}
+
+/// The options of `corpuscle render` for pictures in a paper.
+#[derive(Debug, Args)]
+pub struct FigureOptions {
+    /// Title, time, legend and axes: drawn into the picture, as vectors in an SVG file that holds the picture, or none
+    #[arg(long, value_enum, default_value = "drawn")]
+    pub overlay: OverlayKind,
+    /// Leave the background and the floor out, so that they are transparent
+    #[arg(long)]
+    pub transparent: bool,
+    /// Text below the title; given twice, the second is that of the run beside
+    #[arg(long, value_name = "TEXT")]
+    pub caption: Vec<String>,
+    /// Draw an arrow towards north in pictures of a flood that are not plans, which have one
+    #[arg(long)]
+    pub north: bool,
+    /// Draw a chart of a gauge into the corner: a column of gauges.csv as in P1.depth_m, or a gauge, of which it is the first
+    #[arg(long, value_name = "GAUGE")]
+    pub inset: Option<String>,
+    /// Draw another run beside it, at the same times
+    #[arg(long, value_name = "RUN")]
+    pub beside: Option<PathBuf>,
+}
+
+/// Where title, time, legend and axes are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OverlayKind {
+    /// Into the picture
+    Drawn,
+    /// As vectors, over the picture in an SVG file
+    Vector,
+    /// Nowhere
+    None,
 }
 
 #[derive(Debug, Args)]
@@ -288,8 +324,8 @@ pub struct PictureOptions {
     /// Moving camera: a table with columns time_s, bearing_deg, height_deg, zoom and, for another centre, x and y
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["camera", "from", "centre", "zoom"])]
     pub camera_path: Option<PathBuf>,
-    /// Surface of the terrain of a flood: natural colours, water depth, or a picture (PNG) that covers it from corner to corner or has a world file
-    #[arg(long, value_name = "natural|depth|FILE.png", default_value = "natural")]
+    /// Surface of the terrain of a flood: natural colours, water depth, or a picture: a GeoTIFF, or a PNG file that covers it from corner to corner or has a world file
+    #[arg(long, value_name = "natural|depth|FILE", default_value = "natural")]
     pub ground: String,
     /// Exaggeration of the heights of a flood
     #[arg(long, value_name = "N", value_parser = times, default_value = "1")]

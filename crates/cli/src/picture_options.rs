@@ -24,7 +24,8 @@ pub fn picture_settings(size: [u32; 2], samples: u32, options: &PictureOptions) 
         Water::Brown => WaterColour::Brown,
     };
     let sun = options.sun.unwrap_or_default();
-    Ok(PictureSettings { size, samples, viewpoints, ground, heights: options.heights, water, sun })
+    let heights = options.heights;
+    Ok(PictureSettings { size, samples, viewpoints, ground, heights, water, sun, ..PictureSettings::default() })
 }
 
 fn viewpoint(options: &PictureOptions) -> Viewpoint {

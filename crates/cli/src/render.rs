@@ -1,13 +1,16 @@
 //! `corpuscle render`.
 
-use crate::args::RenderOptions;
+use crate::args::{FigureOptions, OverlayKind, RenderOptions};
 use crate::output::print_json;
 use crate::picture_options::picture_settings;
-use anyhow::Context;
+use crate::refusal::refuse;
+use anyhow::{Context, Result};
 use corpuscle::Simulation;
 use corpuscle::gpu::Image;
-use corpuscle::output::{FrameFiles, WallPlaces, followed_paths, put_into_report, write_picture};
-use corpuscle::pictures::{Moment, Pictures};
+use corpuscle::model::{Container, GaugeColumn, Path as Trajectory};
+use corpuscle::output::{FrameFiles, GaugeTable, WallPlaces, followed_paths, gauge_chart, put_into_report};
+use corpuscle::output::{write_drawing, write_picture};
+use corpuscle::pictures::{Moment, PictureSettings, Pictures, Sheet};
 use corpuscle::scene::{Run, Scene};
 use corpuscle::video::{Film, Format};
 use serde::Serialize;
@@ -33,31 +36,17 @@ struct Filmed {
 }
 
 /// Draws pictures of a finished run into its folder.
-pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode> {
-    let path = options.run.join("scene.toml");
-    let scene = Scene::read(&path, &[]).map_err(corpuscle::Error::from)?;
-    let files = FrameFiles::list(&options.run, |index| time_of(&scene.run, index)).map_err(corpuscle::Error::from)?;
-    let paths = followed_paths(&options.run).map_err(corpuscle::Error::from)?;
-    let simulation = Simulation::open_to_restore(scene, &options.run)?;
-    let settings = picture_settings(options.size, options.samples, &options.picture)?;
-    let mut pictures = Pictures::open(&simulation, settings)?;
-    tell!("drawing on {}", pictures.device());
-    let walls = WallPlaces::read(&options.run).map_err(corpuscle::Error::from)?;
-    let at_start = simulation.model().container();
-    let mut draw = |index: usize| -> Result<(f64, Image), corpuscle::Error> {
-        let frame = files.read(index)?;
-        let container = at_start.map(|container| walls.container(container, frame.time));
-        let image = pictures.draw(&Moment { frame: &frame, on_device: None, paths: &paths, container })?;
-        Ok((frame.time, image))
-    };
+pub fn render(options: &RenderOptions, as_json: bool) -> Result<ExitCode> {
+    refuse_film_of(options)?;
+    let mut drawing = Drawing::open(options)?;
+    tell!("drawing on {}", drawing.runs[0].pictures.device());
     if options.film {
-        return film(options, files.times().len(), draw, as_json);
+        return film(options, &mut drawing, as_json);
     }
     let mut drawn = Vec::new();
-    for index in chosen(options, &files) {
-        let (time_s, Image { width, height, rgba }) = draw(index)?;
-        let file = options.run.join("pictures").join(format!("picture_{index:06}.png"));
-        write_picture(&file, [width, height], &rgba).map_err(corpuscle::Error::from)?;
+    for index in chosen(options, &drawing.runs[0].files) {
+        let (time_s, sheet) = drawing.draw(index)?;
+        let file = write_sheet(options, index, &sheet)?;
         tell!("{}", file.display());
         drawn.push(Drawn { time_s, file });
     }
@@ -68,8 +57,130 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     Ok(ExitCode::SUCCESS)
 }
 
+/// Refuses what a film cannot show.
+fn refuse_film_of(options: &RenderOptions) -> Result<()> {
+    if options.film && options.figure.overlay == OverlayKind::Vector {
+        return Err(refuse("a film has no vectors: --overlay drawn or none"));
+    }
+    let is_folder = options.film_to.as_deref().is_some_and(|file| Format::of(file) == Format::Png);
+    if options.film && options.figure.transparent && !is_folder {
+        return Err(refuse("a film file has no transparent pixels: --film-to FOLDER writes its pictures as PNG files"));
+    }
+    Ok(())
+}
+
+/// The runs that are drawn side by side.
+struct Drawing {
+    runs: Vec<DrawnRun>,
+    overlay: OverlayKind,
+    /// Width and height of the whole, pixels.
+    size: [u32; 2],
+}
+
+impl Drawing {
+    fn open(options: &RenderOptions) -> Result<Self> {
+        let figure = &options.figure;
+        let folders: Vec<&Path> = std::iter::once(&*options.run).chain(figure.beside.as_deref()).collect();
+        let count = folders.len() as u32;
+        let size = [options.size[0] / count, options.size[1]];
+        let settings = PictureSettings {
+            transparent: figure.transparent,
+            north: figure.north,
+            ..picture_settings(size, options.samples, &options.picture)?
+        };
+        let captions = figure.caption.iter().cloned().chain(std::iter::repeat(String::new()));
+        let open = |(folder, caption)| DrawnRun::open(folder, PictureSettings { caption, ..settings.clone() }, figure);
+        let runs = folders.into_iter().zip(captions).map(open).collect::<Result<_>>()?;
+        Ok(Self { runs, overlay: figure.overlay, size: [count * size[0], size[1]] })
+    }
+
+    /// Draws a frame of the first run, with those of the others nearest in time; returns its time, s.
+    fn draw(&mut self, index: usize) -> Result<(f64, Sheet)> {
+        let mut sheet = Sheet::default();
+        let time = self.runs[0].files.times().nth(index).unwrap_or_default();
+        for (number, run) in self.runs.iter_mut().enumerate() {
+            let index = if number == 0 { index } else { run.files.nearest(time) };
+            run.draw(index, self.overlay, &mut sheet)?;
+        }
+        Ok((time, sheet))
+    }
+}
+
+/// A run that is drawn.
+struct DrawnRun {
+    files: FrameFiles,
+    paths: Vec<Trajectory>,
+    walls: WallPlaces,
+    container: Option<Container>,
+    pictures: Pictures,
+    inset: Option<(GaugeColumn, GaugeTable)>,
+}
+
+impl DrawnRun {
+    fn open(folder: &Path, settings: PictureSettings, options: &FigureOptions) -> Result<Self> {
+        let scene = Scene::read(&folder.join("scene.toml"), &[]).map_err(corpuscle::Error::from)?;
+        if settings.north && scene.model.name() != "flood" {
+            return Err(refuse("--north: only floods have a north; leave it out for this run"));
+        }
+        let files = FrameFiles::list(folder, |index| time_of(&scene.run, index)).map_err(corpuscle::Error::from)?;
+        let paths = followed_paths(folder).map_err(corpuscle::Error::from)?;
+        let simulation = Simulation::open_to_restore(scene, folder)?;
+        let pictures = Pictures::open(&simulation, settings)?;
+        let walls = WallPlaces::read(folder).map_err(corpuscle::Error::from)?;
+        let inset = match &options.inset {
+            Some(name) => Some(gauge(name, simulation.model().gauge_columns(), folder)?),
+            None => None,
+        };
+        Ok(Self { files, paths, walls, container: simulation.model().container(), pictures, inset })
+    }
+
+    /// Draws a frame beside what is on a sheet.
+    fn draw(&mut self, index: usize, overlay: OverlayKind, sheet: &mut Sheet) -> Result<()> {
+        let frame = self.files.read(index).map_err(corpuscle::Error::from)?;
+        let container = self.container.map(|container| self.walls.container(container, frame.time));
+        let moment = Moment { frame: &frame, on_device: None, paths: &self.paths, container };
+        let inset = self.inset.as_ref().and_then(|(column, table)| gauge_chart(column, table, frame.time));
+        self.pictures.set_inset(inset);
+        match overlay {
+            OverlayKind::Drawn => sheet.add(self.pictures.draw(&moment)?, None),
+            OverlayKind::Vector => {
+                let (image, overlay) = self.pictures.draw_apart(&moment)?;
+                sheet.add(image, Some(overlay));
+            }
+            OverlayKind::None => sheet.add(self.pictures.draw_apart(&moment)?.0, None),
+        }
+        Ok(())
+    }
+}
+
+/// The gauge of a name, a column or a gauge of which it is the first, with the table of the run's gauges.
+fn gauge(name: &str, columns: Vec<GaugeColumn>, folder: &Path) -> Result<(GaugeColumn, GaugeTable)> {
+    let table = GaugeTable::read(&folder.join("gauges.csv")).map_err(corpuscle::Error::from)?;
+    let found = columns.iter().find(|column| column.header() == name);
+    let found = found.or_else(|| columns.iter().find(|column| column.gauge == name)).cloned();
+    match found {
+        Some(column) => Ok((column, table)),
+        None => {
+            let headers: Vec<String> = columns.iter().map(GaugeColumn::header).collect();
+            Err(refuse(format!("--inset {name}: {} has no such gauge, only {}", folder.display(), headers.join(", "))))
+        }
+    }
+}
+
+/// Writes a picture into the run's folder; returns its file.
+fn write_sheet(options: &RenderOptions, index: usize, sheet: &Sheet) -> Result<PathBuf> {
+    let file = |ending: &str| options.run.join("pictures").join(format!("picture_{index:06}.{ending}"));
+    let Image { width, height, rgba } = sheet.image();
+    write_picture(&file("png"), [width, height], &rgba).map_err(corpuscle::Error::from)?;
+    if options.figure.overlay != OverlayKind::Vector {
+        return Ok(file("png"));
+    }
+    write_drawing(&file("svg"), &sheet.svg()?).map_err(corpuscle::Error::from)?;
+    Ok(file("svg"))
+}
+
 /// Puts what was drawn into the run's report, where it has one.
-fn show_in_report(run: &Path) -> anyhow::Result<()> {
+fn show_in_report(run: &Path) -> Result<()> {
     if put_into_report(run).map_err(corpuscle::Error::from)? {
         tell!("{} was updated", run.join("report.html").display());
     }
@@ -77,18 +188,14 @@ fn show_in_report(run: &Path) -> anyhow::Result<()> {
 }
 
 /// Writes a film of all frames.
-fn film(
-    options: &RenderOptions,
-    frames: usize,
-    mut draw: impl FnMut(usize) -> Result<(f64, Image), corpuscle::Error>,
-    as_json: bool,
-) -> anyhow::Result<ExitCode> {
+fn film(options: &RenderOptions, drawing: &mut Drawing, as_json: bool) -> Result<ExitCode> {
     let file = options.film_to.clone().unwrap_or_else(|| options.run.join("film.mp4"));
-    let mut film =
-        Film::create(&file, Format::of(&file), options.size, options.rate).map_err(corpuscle::Error::from)?;
+    let frames = drawing.runs[0].files.times().len();
+    let film = Film::create(&file, Format::of(&file), drawing.size, options.rate);
+    let mut film = film.map_err(corpuscle::Error::from)?;
     for index in 0..frames {
-        let (_, image) = draw(index)?;
-        film.add(&image.rgba).map_err(corpuscle::Error::from)?;
+        let (_, sheet) = drawing.draw(index)?;
+        film.add(&sheet.image().rgba).map_err(corpuscle::Error::from)?;
         tell!("picture {} of {frames}", index + 1);
     }
     let pictures = film.pictures();

@@ -2,11 +2,23 @@
 
 mod tool;
 
+use corpuscle_drawing::png::decode_rgba;
+use geotiff_writer::{GeoTiffBuilder, PhotometricInterpretation};
+use ndarray::Array3;
 use std::fs;
+use std::path::Path;
 use tool::{LAKE, Place};
 
 const GAS: &str = "title = \"Three\"\nrun = { until_s = 2, frame_every_s = 0.5 }\n[gas]\nsize = [9, 9]\nfollow = 0\n\
                    ball = [{ position = [2, 2], velocity = [1, 0], radius = 1, mass = 1 }, { position = [6, 2], radius = 1, mass = 1 }]";
+
+/// Writes a red photo, 20 m x 20 m, from a corner at the north-west on.
+fn write_photo(path: &Path, [x, y]: [f64; 2]) {
+    let builder = GeoTiffBuilder::new(40, 40).bands(3).photometric(PhotometricInterpretation::Rgb);
+    let builder = builder.pixel_scale(0.5, 0.5).origin(x, y);
+    let red = Array3::from_shape_fn((40, 40, 3), |(_, _, band)| if band == 0 { 220_u8 } else { 20 });
+    builder.write_3d(path, red.view()).unwrap();
+}
 
 /// False, after a line that says so, where there is no device; a failure where one is required.
 fn has_device(test: &str) -> bool {
@@ -53,7 +65,8 @@ fn a_flood_is_drawn_from_where_one_wants_and_with_what_one_wants_on_its_ground()
     let small = ["render", "run", "--at", "0", "--size", "160x90", "--samples", "1"];
     place.run(&small).expect_status(0);
     fs::rename(place.path("run/pictures/picture_000000.png"), place.path("photo.png")).unwrap();
-    let looks: [&[&str]; 10] = [
+    write_photo(&place.path("photo.tif"), [0.0, 20.0]);
+    let looks: [&[&str]; 11] = [
         &[],
         &["--camera", "plan"],
         &["--from", "20,50"],
@@ -61,6 +74,7 @@ fn a_flood_is_drawn_from_where_one_wants_and_with_what_one_wants_on_its_ground()
         &["--camera-path", "path.csv"],
         &["--ground", "depth"],
         &["--ground", "photo.png"],
+        &["--ground", "photo.tif"],
         &["--heights", "3"],
         &["--water", "brown"],
         &["--sun", "250,20"],
@@ -72,6 +86,53 @@ fn a_flood_is_drawn_from_where_one_wants_and_with_what_one_wants_on_its_ground()
     for (number, picture) in drawn.iter().enumerate() {
         assert!(!drawn[..number].contains(picture), "{:?} changes nothing", looks[number]);
     }
+}
+
+#[test]
+fn pictures_for_papers_have_what_one_wants_in_them() {
+    let place = Place::new();
+    place.write("lake.toml", LAKE);
+    place.run(&["run", "lake.toml", "-o", "run"]).expect_status(0);
+    place.write("gas.toml", GAS);
+    place.run(&["run", "gas.toml", "-o", "gas"]).expect_status(0);
+    if !has_device("pictures for papers") {
+        return;
+    }
+    let small = ["render", "run", "--at", "0", "--size", "320x180", "--samples", "1"];
+    let gauge = fs::read_to_string(place.path("run/gauges.csv")).unwrap();
+    let gauge = gauge.lines().next().unwrap().split(',').nth(1).unwrap();
+    let looks: [&[&str]; 7] = [
+        &[],
+        &["--transparent"],
+        &["--overlay", "none"],
+        &["--caption", "A lake at rest"],
+        &["--north"],
+        &["--inset", gauge],
+        &["--beside", "gas", "--caption", "One", "--caption", "Two"],
+    ];
+    let read = |ending: &str| fs::read(place.path(format!("run/pictures/picture_000000.{ending}")));
+    let drawn = looks.map(|look| {
+        place.run(&[&small, look].concat()).expect_status(0);
+        read("png").unwrap()
+    });
+    for (number, picture) in drawn.iter().enumerate() {
+        assert!(!drawn[..number].contains(picture), "{:?} changes nothing", looks[number]);
+    }
+    let opaque = |png: &[u8]| {
+        let (_, _, rgba) = decode_rgba(png).unwrap();
+        rgba.chunks_exact(4).filter(|pixel| pixel[3] == 255).count()
+    };
+    assert_eq!(opaque(&drawn[0]), 320 * 180);
+    // The block of ground is there, the sky round it is not.
+    assert!((2000..40_000).contains(&opaque(&drawn[1])), "{}", opaque(&drawn[1]));
+    assert!(read("svg").is_err());
+    place
+        .run(&[&small[..], &["--overlay", "vector", "--caption", "A < B", "--beside", "gas"]].concat())
+        .expect_status(0);
+    assert_eq!(decode_rgba(&read("png").unwrap()).unwrap().0, 320);
+    let svg = String::from_utf8(read("svg").unwrap()).unwrap();
+    assert!(svg.contains("A &lt; B") && svg.contains(">Three<"), "{svg:.2000}");
+    assert_eq!(svg.matches("data:image/png;base64").count(), 2);
 }
 
 #[test]
@@ -93,12 +154,25 @@ fn ways_to_look_that_cannot_be_are_refused_in_words() {
     refused(["--sun", "250,1"], "135,40");
     refused(["--sun", "noon"], "2026-06-21T15:00Z");
     refused(["--water", "green"], "brown");
+    refused(["--overlay", "paper"], "vector");
+    if has_device("a gauge that is not there") {
+        let ended = place.run(&["render", "run", "--inset", "Mill"]).expect_status(2);
+        assert!(ended.stderr.contains("no such gauge") && ended.stderr.contains("_m3"), "{}", ended.stderr);
+    }
+    refused(["--beside", "nowhere"], "nowhere");
+    for (option, what) in [(["--overlay", "vector"], "no vectors"), (["--transparent", "--json"], "--film-to")] {
+        let ended = place.run(&["render", "run", "--film", option[0], option[1]]).expect_status(2);
+        assert!(ended.stderr.contains(what), "{option:?}: {}", ended.stderr);
+    }
     refused(["--camera-path", "header.csv"], "bearing_deg");
     refused(["--camera-path", "row.csv"], "line 2");
     refused(["--camera-path", "none.csv"], "none.csv");
     if has_device("a picture for the ground") {
         refused(["--ground", "photo.png"], "PNG");
         refused(["--ground", "none.png"], "none.png");
+        write_photo(&place.path("far.tif"), [500.0, 20.0]);
+        refused(["--ground", "far.tif"], "beside the terrain");
+        refused(["--ground", "none.tif"], "none.tif");
         // The lake has no place on Earth.
         refused(["--sun", "2026-06-21T12:00Z"], "--sun 135,40");
     }

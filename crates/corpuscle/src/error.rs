@@ -34,7 +34,7 @@ pub enum Error {
     Render(#[from] corpuscle_render::RenderError),
     /// A picture for the surface of the terrain.
     #[cfg(feature = "pictures")]
-    #[error("{} cannot be laid on the terrain: {what}; it must be a PNG file", path.display())]
+    #[error("{} cannot be laid on the terrain: {what}; it must be a PNG file, or a GeoTIFF that lies on the terrain", path.display())]
     GroundPicture {
         /// Its file.
         path: std::path::PathBuf,

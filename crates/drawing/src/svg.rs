@@ -10,7 +10,7 @@ pub struct Svg {
 }
 
 /// A finished drawing.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     width: f64,
     height: f64,

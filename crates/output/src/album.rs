@@ -124,7 +124,9 @@ fn shrunk([width, height]: [usize; 2], rgba: &[u8]) -> ([usize; 2], Vec<u8>) {
             let (rows, columns) = (part(y, height, size[1]), part(x, width, size[0]));
             let count = rows.len() * columns.len();
             for pixel in rows.flat_map(|row| columns.clone().map(move |column| 4 * (row * width + column))) {
-                (0..3).for_each(|k| sums[k] += usize::from(rgba[pixel + k]));
+                // Where a picture is transparent the page is seen, which is white.
+                let opacity = usize::from(rgba[pixel + 3]);
+                (0..3).for_each(|k| sums[k] += (opacity * usize::from(rgba[pixel + k]) + (255 - opacity) * 255) / 255);
             }
             rgb.extend(sums.map(|sum| ((sum + count / 2) / count) as u8));
         }
@@ -188,6 +190,8 @@ mod tests {
         let (size, rgb) = shrunk([1600, 10], &rgba);
         assert_eq!((size, rgb.len()), ([800, 5], 3 * 800 * 5));
         assert!(rgb.chunks_exact(3).all(|pixel| pixel == [100, 10, 20]));
-        assert_eq!(shrunk([3, 1], &[9; 12]), ([3, 1], vec![9; 9]));
+        // Transparent pixels show the page, which is white.
+        let rgba = [[9, 9, 9, 255], [9, 9, 9, 0], [55, 155, 255, 51]].concat();
+        assert_eq!(shrunk([3, 1], &rgba), ([3, 1], vec![9, 9, 9, 255, 255, 255, 215, 235, 255]));
     }
 }

@@ -9,6 +9,7 @@ mod checkpoint;
 mod error;
 mod extent;
 mod frames;
+mod gauge_chart;
 mod gauges;
 mod maps;
 mod number;
@@ -25,6 +26,7 @@ pub use checkpoint::Clock;
 pub use error::OutputError;
 pub use extent::{ExtentScores, compare_extent, write_extent, write_run_up};
 pub use frames::{FrameFiles, FrameFormat, write_extended_xyz};
+pub use gauge_chart::gauge_chart;
 pub use gauges::GaugeTable;
 pub use maps::MapFiles;
 pub use picture::Key as GasKey;
@@ -33,6 +35,6 @@ pub use report::{
     ValidatedMeasure, ValidationReport, gas_key,
 };
 pub use run_folder::{RunFolder, followed_paths, next_run_folder};
-pub use stills::write_picture;
+pub use stills::{write_drawing, write_picture};
 pub use summary::{LedgerEntry, Status, Summary, ledger_entries};
 pub use wall_places::WallPlaces;

@@ -18,3 +18,11 @@ pub fn write_picture(path: &Path, size: [u32; 2], rgba: &[u8]) -> Result<(), Out
     let png = encode_rgba(size[0], size[1], rgba).map_err(|what| OutputError::content(path, what))?;
     write_bytes(path, &png)
 }
+
+/// Writes a drawing, SVG, into a folder that is there.
+///
+/// # Errors
+/// [`OutputError::Write`].
+pub fn write_drawing(path: &Path, svg: &str) -> Result<(), OutputError> {
+    write_bytes(path, svg.as_bytes())
+}

@@ -155,7 +155,7 @@ impl Renderer {
     ) {
         let cleared = which != Which::Moving;
         let [colour, depth] = [&target.colour, &target.depth].map(whole);
-        let load = if cleared { wgpu::LoadOp::Clear(behind(light)) } else { wgpu::LoadOp::Load };
+        let load = if cleared { wgpu::LoadOp::Clear(behind(light, target.transparent)) } else { wgpu::LoadOp::Load };
         let load_depth = if cleared { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("opaque"),
@@ -169,7 +169,7 @@ impl Renderer {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, &view.group, &[]);
-        if cleared && light.draws_backdrop() {
+        if cleared && light.draws_backdrop() && !target.transparent {
             pass.set_pipeline(&self.backdrop);
             pass.draw(0..3, 0..1);
         }
@@ -195,10 +195,10 @@ impl Which {
     }
 }
 
-/// The one colour behind everything, where the backdrop is not drawn.
-fn behind(light: &Light) -> wgpu::Color {
+/// The one colour behind everything, where the backdrop is not drawn: transparent things show it also where it is left out.
+fn behind(light: &Light, left_out: bool) -> wgpu::Color {
     let [r, g, b] = light.plain_backdrop().map(f64::from);
-    wgpu::Color { r, g, b, a: 1.0 }
+    wgpu::Color { r, g, b, a: if left_out { 0.0 } else { 1.0 } }
 }
 
 /// The sun's depth map.

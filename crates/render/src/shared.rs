@@ -64,8 +64,8 @@ corpuscle_gpu::declare! {
             pub(crate) pressed: u32,
             /// Whether something is laid over.
             pub(crate) overlay: u32,
-            /// Fills up.
-            pub(crate) unused: u32,
+            /// Whether the background is left out.
+            pub(crate) transparent: u32,
         }
 
         /// A ball, in stage coordinates.

@@ -20,6 +20,8 @@ pub struct Target {
     pub size: [u32; 2],
     /// Samples each way in a pixel.
     pub samples: u32,
+    /// True where the background is left out, so that it is transparent in the picture.
+    pub transparent: bool,
     pub(crate) colour: wgpu::Texture,
     pub(crate) depth: wgpu::Texture,
     pub(crate) behind_colour: wgpu::Texture,
@@ -45,6 +47,7 @@ impl Target {
         Ok(Self {
             size,
             samples,
+            transparent: false,
             colour: texture("colour", COLOUR_FORMAT, into)?,
             depth: texture("depth", DEPTH_FORMAT, into)?,
             behind_colour: texture("colour behind", COLOUR_FORMAT, behind)?,
@@ -52,6 +55,11 @@ impl Target {
             picture: texture_2d(gpu, "picture", size, PICTURE_FORMAT, into)?,
             static_layer: Mutex::default(),
         })
+    }
+
+    /// The same for pictures without background.
+    pub fn without_background(self, transparent: bool) -> Self {
+        Self { transparent, ..self }
     }
 
     /// Width and height in samples: of everything but the finished picture.

@@ -100,7 +100,7 @@ impl Subject for FloodPicture {
         let quick = context.quality == Quality::Simple;
         self.ground.draw_quickly(quick);
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
-        if !is_plan && !quick {
+        if !is_plan && !quick && !context.target.transparent {
             things.push(&mut self.floor);
         }
         things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
@@ -255,6 +255,7 @@ impl FloodPicture {
             time: if self.heights == 1.0 { time } else { format!("{time}, heights × {}", self.heights) },
             key,
             scale_bar: Some("m".into()),
+            north: is_plan || context.north,
             axes: context.shows_all().then(axes),
             key_place: if is_plan { KeyPlace::Below } else { KeyPlace::Corner },
             ..Overlay::default()

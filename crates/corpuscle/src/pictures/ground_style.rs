@@ -13,7 +13,8 @@ pub enum GroundStyle {
     Natural,
     /// A map of the depth in classes of colour.
     Depth,
-    /// A picture in a PNG file, an aerial photo for one, which covers the ground from corner to corner, north up, or lies where a world file beside it says.
+    /// A picture, an aerial photo for one: a GeoTIFF, or a PNG file, which covers the ground from corner to corner, north up, or lies where a world
+    /// file beside it says.
     Picture(PathBuf),
 }
 

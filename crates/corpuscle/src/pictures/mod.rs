@@ -11,6 +11,7 @@ mod lines;
 mod particles;
 mod photo;
 mod scenery;
+mod sheet;
 mod show;
 mod sketch;
 mod subject;
@@ -21,6 +22,7 @@ mod water_colour;
 
 use crate::{Error, Simulation, models};
 pub use camera_offset::CameraOffset;
+use corpuscle_drawing::svg::Figure;
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
 pub use corpuscle_model::Glance;
 use corpuscle_model::{Container, Frame, Path};
@@ -34,6 +36,7 @@ use flood::FloodPicture;
 pub use ground_style::GroundStyle;
 pub use particles::Particles;
 pub use scenery::Scenery;
+pub use sheet::Sheet;
 pub use show::{Quality, Shown};
 pub use sketch::{Disc, GroundMap, Line, Patch, Sketch, SketchView, Sketcher, Sketches};
 pub use subject::Subject;
@@ -60,6 +63,12 @@ pub struct PictureSettings {
     pub water: WaterColour,
     /// Where the sun stands over a flood.
     pub sun: Sun,
+    /// True to leave the background and the floor out, so that they are transparent.
+    pub transparent: bool,
+    /// True for an arrow towards north in pictures of floods that are not plans, which always have one.
+    pub north: bool,
+    /// A text below the title; may be empty.
+    pub caption: String,
 }
 
 impl Default for PictureSettings {
@@ -72,6 +81,9 @@ impl Default for PictureSettings {
             heights: 1.0,
             water: WaterColour::default(),
             sun: Sun::default(),
+            transparent: false,
+            north: false,
+            caption: String::new(),
         }
     }
 }
@@ -112,6 +124,14 @@ pub struct DrawContext {
     paper: [f32; 3],
     /// True where text and lines are drawn into the picture; false where the caller draws them.
     overlaid: bool,
+    /// True where they are drawn for a file of their own.
+    overlay_apart: bool,
+    /// True for an arrow towards north in pictures that are not plans.
+    north: bool,
+    /// A text below the title.
+    caption: String,
+    /// A small drawing in a lower corner.
+    inset: Option<Figure>,
 }
 
 impl Pictures {
@@ -158,6 +178,11 @@ impl Pictures {
         &self.context.renderer.gpu().name
     }
 
+    /// Draws a small drawing into a lower corner of the next pictures.
+    pub fn set_inset(&mut self, inset: Option<Figure>) {
+        self.context.inset = inset;
+    }
+
     /// The picture of a moment.
     ///
     /// # Errors
@@ -165,12 +190,24 @@ impl Pictures {
     pub fn draw(&mut self, moment: &Moment<'_>) -> Result<Image, Error> {
         self.still(moment, &CameraOffset::default())
     }
+
+    /// The same with its overlay apart.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the device was lost.
+    pub fn draw_apart(&mut self, moment: &Moment<'_>) -> Result<(Image, Figure), Error> {
+        self.context.overlay_apart = true;
+        let shown = self.draw_still(moment, &CameraOffset::default());
+        self.context.overlay_apart = false;
+        let Shown { stage, camera, overlay, .. } = shown?;
+        Ok((self.read()?, overlay.figure(&stage, &camera, self.context.target.size)))
+    }
 }
 
 impl DrawContext {
     fn new(gpu: &Gpu, settings: &PictureSettings, ground: Option<&Terrain>) -> Result<Self, Error> {
         let renderer = Renderer::new(gpu);
-        let target = Target::new(gpu, settings.size, settings.samples)?;
+        let target = Target::new(gpu, settings.size, settings.samples)?.without_background(settings.transparent);
         let viewpoints = settings.viewpoints.iter().copied();
         let stations = match ground {
             Some(ground) => viewpoints.map(|at| Station::on_ground(at, ground, settings.heights)).collect(),
@@ -179,8 +216,23 @@ impl DrawContext {
         let (balls, tubes) = (BallPainter::new(&renderer), TubePainter::new(&renderer));
         let caps = CapPainter::new(&renderer);
         let fluids = FluidPainter::new(&renderer);
-        let (camera_offset, quality, paper, overlaid) = (CameraOffset::default(), Quality::Full, [1.0; 3], true);
-        Ok(Self { renderer, balls, tubes, caps, fluids, target, stations, camera_offset, quality, paper, overlaid })
+        Ok(Self {
+            renderer,
+            balls,
+            tubes,
+            caps,
+            fluids,
+            target,
+            stations,
+            camera_offset: CameraOffset::default(),
+            quality: Quality::Full,
+            paper: [1.0; 3],
+            overlaid: true,
+            overlay_apart: false,
+            north: settings.north,
+            caption: settings.caption.clone(),
+            inset: None,
+        })
     }
 
     /// Width of a picture over its height.
@@ -194,6 +246,11 @@ impl DrawContext {
         if self.quality == Quality::Full { light } else { light.without_shadows() }
     }
 
+    /// An overlay with what the user wants in it.
+    fn annotated(&self, overlay: Overlay) -> Overlay {
+        Overlay { caption: self.caption.clone(), inset: self.inset.clone(), ..overlay }
+    }
+
     /// Draws things, with their overlay if it is wanted in the picture.
     fn take(
         &self,
@@ -203,11 +260,13 @@ impl DrawContext {
         things: &mut [&mut dyn Drawable],
         overlay: Overlay,
     ) -> Result<Shown, Error> {
+        let overlay = if self.overlaid { self.annotated(overlay) } else { overlay };
         let quick = !self.overlaid && self.quality == Quality::Simple && self.target.samples == 1;
         if quick {
             self.renderer.draw_light(&self.target, stage, camera, light, things);
         } else {
-            let image = if self.overlaid { Some(overlay.image(stage, camera, self.target.size)?) } else { None };
+            let is_drawn = self.overlaid && !self.overlay_apart;
+            let image = if is_drawn { Some(overlay.image(stage, camera, self.target.size)?) } else { None };
             self.renderer.draw(&self.target, stage, camera, light, things, image.as_ref());
         }
         Ok(Shown { stage: *stage, camera: *camera, on_paper: !light.is_lit(), finished: !quick, overlay })

@@ -76,7 +76,7 @@ impl Pictures {
         Ok(self.read_later())
     }
 
-    fn draw_still(&mut self, moment: &Moment<'_>, camera_offset: &CameraOffset) -> Result<Shown, Error> {
+    pub(super) fn draw_still(&mut self, moment: &Moment<'_>, camera_offset: &CameraOffset) -> Result<Shown, Error> {
         let context = &mut self.context;
         (context.overlaid, context.quality, context.camera_offset, context.paper) =
             (true, Quality::Full, *camera_offset, [1.0; 3]);
@@ -106,7 +106,8 @@ impl Pictures {
         if (target.size, target.samples) == (size, samples) {
             return Ok(false);
         }
-        *target = Target::new(self.context.renderer.gpu(), size, samples)?;
+        let transparent = target.transparent;
+        *target = Target::new(self.context.renderer.gpu(), size, samples)?.without_background(transparent);
         Ok(true)
     }
 

@@ -45,6 +45,8 @@ pub(crate) struct Chart {
     pub time_named: bool,
     /// The lines.
     pub series: Vec<Series>,
+    /// Time, s, up to which the lines are drawn in full, with a mark there; none for all of them.
+    pub now: Option<f64>,
 }
 
 /// Space left of the plot at least.
@@ -84,8 +86,13 @@ impl Chart {
         let top = self.draw_legend(&mut svg);
         let axes = self.axes(top);
         draw_axes(&mut svg, &axes, self.time_named);
-        self.series.iter().for_each(|series| draw_series(&mut svg, &axes, series));
-        if let [only] = self.series.as_slice() {
+        for series in &self.series {
+            match self.now {
+                Some(now) => draw_until(&mut svg, &axes, series, now),
+                None => draw_series(&mut svg, &axes, series),
+            }
+        }
+        if let ([only], None) = (self.series.as_slice(), self.now) {
             draw_peak(&mut svg, &axes, only);
         }
         svg.finish(self.size, &format!("Chart: {}, {}", self.title, self.unit))
@@ -185,6 +192,19 @@ fn draw_series(svg: &mut Svg, axes: &Axes, series: &Series) {
     }
 }
 
+/// Draws a series up to a time, s, with a mark there, and the rest of it pale.
+fn draw_until(svg: &mut Svg, axes: &Axes, series: &Series, now: f64) {
+    let class = format!("series s{}", series.colour % 6);
+    let places = thinned(&series.points).into_iter().map(|point| axes.place(point));
+    svg.styled_path(places, false, &class, "stroke-opacity:0.3");
+    let so_far = series.points[..series.points.partition_point(|point| point[0] <= now)].to_vec();
+    let last = so_far.last().copied().filter(|point| point[1].is_finite());
+    draw_series(svg, axes, &Series { points: so_far, ..series.clone() });
+    if let Some(last) = last {
+        svg.circle(axes.place(last), 3.5, &format!("peak s{}", series.colour % 6));
+    }
+}
+
 fn draw_peak(svg: &mut Svg, axes: &Axes, series: &Series) {
     let Some(peak) = series.peak().filter(|peak| peak[1] > 0.0) else { return };
     svg.circle(axes.place(peak), 3.2, &format!("peak s{}", series.colour % 6));
@@ -229,7 +249,20 @@ mod tests {
             span: [0.0, 3600.0],
             time_named: true,
             series: vec![series],
+            now: None,
         }
+    }
+
+    #[test]
+    fn a_chart_until_now_keeps_its_axes_and_marks_the_time() {
+        let points: Vec<[f64; 2]> = (0..=36).map(|i| [100.0 * f64::from(i), f64::from(i)]).collect();
+        let whole = chart(points.clone());
+        let until = |now| Chart { now: Some(now), ..chart(points.clone()) };
+        assert_eq!(whole.axes(40.0).range, until(500.0).axes(40.0).range);
+        let [early, late] = [500.0, 2500.0].map(|now| until(now).figure().inline());
+        assert_ne!(early, late);
+        assert!(early.contains("stroke-opacity") && early.matches("<circle").count() == 1, "{early}");
+        assert!(!until(-1.0).figure().inline().contains("<circle"), "before the first row there is no value");
     }
 
     #[test]

@@ -104,6 +104,7 @@ pub(super) fn hydrographs(all: &[GaugeSeries], span: [f64; 2], width: f64) -> Ve
         time_named: title.is_empty(),
         title,
         series: series.map(|s| s.line("", colour, true)).into_iter().collect(),
+        now: None,
     };
     let pair = |depth: &GaugeSeries| {
         let speed = all.iter().find(|s| s.gauge == depth.gauge && s.quantity == "speed");
@@ -143,6 +144,7 @@ pub(super) fn together(all: &[GaugeSeries], unit: &str, title: &str, span: [f64;
         span,
         time_named: true,
         series: lines.collect(),
+        now: None,
     })
 }
 

@@ -3,13 +3,14 @@
 mod axes;
 mod borders;
 mod key;
+mod north;
 
 pub use axes::AxisOnPage;
 
 use crate::{Camera, ColourTable, Lens, RenderError, Stage};
 use corpuscle_drawing::bars::{prefix, scale_bar};
 use corpuscle_drawing::png::svg_to_pixels;
-use corpuscle_drawing::svg::{Anchor, Svg};
+use corpuscle_drawing::svg::{Anchor, Figure, Svg};
 use corpuscle_gpu::Image;
 
 /// Height of a picture in CSS pixels: letters keep their part of it.
@@ -18,6 +19,11 @@ const HEIGHT: f64 = 720.0;
 const MARGIN: f64 = 26.0;
 /// Width of a letter.
 const LETTER: f64 = 7.0;
+/// Height of a line of the caption, and its width at most, part of the picture's.
+const LINE: f64 = 19.0;
+const CAPTION: f64 = 0.6;
+/// Space round an inset.
+const PADDING: f64 = 10.0;
 
 /// The overlay of a picture. Empty texts are left out.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -44,6 +50,12 @@ pub struct Overlay {
     pub scale_bar: Option<String>,
     /// Axes along the edges of a box.
     pub axes: Option<Axes>,
+    /// An arrow towards north, the world's y, in the upper right corner.
+    pub north: bool,
+    /// A text below the title.
+    pub caption: String,
+    /// A small drawing in a lower corner, where no legend stands.
+    pub inset: Option<Figure>,
 }
 
 /// What colours mean.
@@ -167,6 +179,14 @@ impl Overlay {
     /// [`RenderError::Overlay`].
     pub fn image(&self, stage: &Stage, camera: &Camera, size: [u32; 2]) -> Result<Image, RenderError> {
         let scale = f64::from(size[1]) / HEIGHT;
+        let figure = self.figure(stage, camera, size);
+        let (width, height, rgba) = svg_to_pixels(&figure, scale as f32).map_err(RenderError::Overlay)?;
+        Ok(fitted(Image { width, height, rgba }, size))
+    }
+
+    /// The overlay as a drawing for a picture of `size` pixels: 720 units high, so that letters keep their part of the picture.
+    pub fn figure(&self, stage: &Stage, camera: &Camera, size: [u32; 2]) -> Figure {
+        let scale = f64::from(size[1]) / HEIGHT;
         let mut page = Page { svg: Svg::default(), size: [f64::from(size[0]) / scale, HEIGHT], stage, camera };
         if let Some(axes) = &self.axes {
             axes.draw(&mut page);
@@ -182,15 +202,63 @@ impl Overlay {
         }
         self.draw_key(&mut page);
         page.svg.text([page.size[0] - MARGIN, HEIGHT - MARGIN + 8.0], Anchor::End, "over-number", &self.remark);
-        if let (Some(unit), Lens::Orthographic { height }) = (&self.scale_bar, camera.lens) {
-            let at = [page.size[0] - MARGIN - 10.0, HEIGHT - MARGIN - 24.0];
-            panel(&mut page.svg, [at[0] - 190.0, at[1] - 8.0], [200.0, 38.0]);
-            scale_bar(&mut page.svg, HEIGHT / height, unit, at);
+        self.draw_caption(&mut page);
+        let bottom = self.draw_scale_bar(&mut page);
+        self.draw_inset(&mut page, bottom);
+        if self.north {
+            north::draw(&mut page);
         }
-        let figure = page.svg.finish(page.size, &self.title);
-        let (width, height, rgba) = svg_to_pixels(&figure, scale as f32).map_err(RenderError::Overlay)?;
-        Ok(fitted(Image { width, height, rgba }, size))
+        page.svg.finish(page.size, &self.title)
     }
+
+    fn draw_caption(&self, page: &mut Page<'_>) {
+        let letters = (CAPTION * page.size[0] / LETTER) as usize;
+        for (number, line) in lines(&self.caption, letters).iter().enumerate() {
+            let baseline = MARGIN + 40.0 + LINE * number as f64;
+            page.svg.text([MARGIN, baseline], Anchor::Start, "over", line);
+        }
+    }
+
+    /// Draws the scale bar, where the lens is to scale; returns where the corner is free above it.
+    fn draw_scale_bar(&self, page: &mut Page<'_>) -> f64 {
+        let free = HEIGHT - MARGIN - if self.remark.is_empty() { 0.0 } else { 20.0 };
+        let (Some(unit), Lens::Orthographic { height }) = (&self.scale_bar, page.camera.lens) else { return free };
+        let at = [page.size[0] - MARGIN - 10.0, HEIGHT - MARGIN - 24.0];
+        page.svg.rectangle([at[0] - 190.0, at[1] - 8.0], [200.0, 38.0], "panel");
+        scale_bar(&mut page.svg, HEIGHT / height, unit, at);
+        at[1] - 20.0
+    }
+
+    /// Draws the inset, in the right corner above a height on the page.
+    fn draw_inset(&self, page: &mut Page<'_>, bottom_right: f64) {
+        let Some(inset) = &self.inset else { return };
+        let [width, height] = inset.size().map(|length| length + 2.0 * PADDING);
+        let has_legend = self.key.is_some() || !self.lines.is_empty();
+        let corner = |axes: &Axes| Some([page.place(axes.to)?[0] - PADDING, page.place(axes.from)?[1] - PADDING]);
+        let [left, bottom] = match (self.key_place, self.axes.as_ref().and_then(corner)) {
+            // Legend and numbers stand round the axes, so it lies within them.
+            (KeyPlace::Below | KeyPlace::Beside, Some([right, bottom])) => [right - width, bottom],
+            (KeyPlace::Corner, _) if has_legend => [page.size[0] - MARGIN - width, bottom_right],
+            _ => [MARGIN, HEIGHT - MARGIN],
+        };
+        page.svg.rectangle([left, bottom - height], [width, height], "inset");
+        page.svg.place([left + PADDING, bottom - height + PADDING], inset);
+    }
+}
+
+/// A text broken between words into lines of so many letters at most; a longer word has a line of its own.
+fn lines(text: &str, letters: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= letters => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// An image cut or padded to a size: the page's width need not be whole pixels.
@@ -206,10 +274,6 @@ fn fitted(image: Image, [width, height]: [u32; 2]) -> Image {
     Image { width, height, rgba }
 }
 
-fn panel(svg: &mut Svg, place: [f64; 2], size: [f64; 2]) {
-    svg.rectangle(place, size, "panel");
-}
-
 /// Divisor of the numbers of axes, and prefix of their unit, where the longest axis has this length.
 fn axis_unit(longest: f64, unit: &str) -> (f64, String) {
     if unit.is_empty() {
@@ -218,4 +282,16 @@ fn axis_unit(longest: f64, unit: &str) -> (f64, String) {
     // Up to a few thousand reads well: 2000 m, not 2 km.
     let (factor, prefix) = prefix(0.2 * longest);
     (factor, format!("{prefix}{unit}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn captions_are_broken_between_words() {
+        assert_eq!(lines("", 10), Vec::<String>::new());
+        assert_eq!(lines("a dam breaks  over\na sill", 12), ["a dam breaks", "over a sill"]);
+        assert_eq!(lines("Überschwemmungsgebiet am Fluss", 8), ["Überschwemmungsgebiet", "am Fluss"]);
+    }
 }

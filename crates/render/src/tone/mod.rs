@@ -62,7 +62,7 @@ impl Tone {
             samples: target.samples,
             pressed: u32::from(pressed),
             overlay: u32::from(overlay.is_some()),
-            unused: 0,
+            transparent: u32::from(target.transparent),
         };
         let buffer = uniform(gpu, "tone", &settings);
         let nothing = Image { width: 1, height: 1, rgba: vec![0; 4] };

@@ -7,17 +7,23 @@
 @group(0) @binding(1) var light: texture_2d<f32>;
 @group(0) @binding(2) var overlay: texture_2d<f32>;
 
-// The mean of a pixel's samples.
-fn pixel_at(pixel: vec2u) -> vec3f {
-    var sum = vec3f(0.0);
+// The mean of a pixel's samples, of those that show something where the background is left out, and their part.
+fn covered_pixel_at(pixel: vec2u) -> vec4f {
+    var sum = vec4f(0.0);
     for (var y = 0u; y < tone.samples; y++) {
         for (var x = 0u; x < tone.samples; x++) {
-            let sample = textureLoad(light, pixel * tone.samples + vec2u(x, y), 0).rgb;
+            let sample = textureLoad(light, pixel * tone.samples + vec2u(x, y), 0);
+            let opacity = select(1.0, sample.a, tone.transparent == 1u);
             // Pressed before they are averaged: one bright sample must not outweigh its neighbours.
-            sum += select(clamp(sample, vec3f(0.0), vec3f(1.0)), press(max(sample, vec3f(0.0))), tone.pressed == 1u);
+            let plain = clamp(sample.rgb, vec3f(0.0), vec3f(1.0));
+            sum += opacity * vec4f(select(plain, press(max(sample.rgb, vec3f(0.0))), tone.pressed == 1u), 1.0);
         }
     }
-    return encode(sum / f32(tone.samples * tone.samples));
+    return vec4f(encode(sum.rgb / max(sum.a, 1e-6)), sum.a / f32(tone.samples * tone.samples));
+}
+
+fn pixel_at(pixel: vec2u) -> vec3f {
+    return covered_pixel_at(pixel).rgb;
 }
 
 fn brightness(colour: vec3f) -> f32 {
@@ -61,9 +67,26 @@ fn between(pixel: vec2u, offset: vec2f) -> vec3f {
     return mix(upper, lower, part.y);
 }
 
+// A pixel with its opacity, under the overlay. PNG files hold colours without their opacity multiplied in.
+fn without_background(pixel: vec2u) -> vec4f {
+    let own = covered_pixel_at(pixel);
+    var over = vec4f(0.0);
+    if tone.overlay == 1u {
+        over = textureLoad(overlay, pixel, 0);
+    }
+    let opacity = over.a + (1.0 - over.a) * own.a;
+    if opacity <= 0.0 {
+        return vec4f(1.0, 1.0, 1.0, 0.0);
+    }
+    return vec4f((over.rgb + (1.0 - over.a) * own.a * own.rgb) / opacity, opacity);
+}
+
 @fragment
 fn fragment(@builtin(position) place: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(place.xy);
+    if tone.transparent == 1u {
+        return without_background(pixel);
+    }
     var colour = pixel_at(pixel);
     if tone.samples == 1u && tone.pressed == 1u {
         colour = softened(pixel);

@@ -14,19 +14,13 @@ const LARGEST_COMPRESSION: u64 = 20_000;
 
 /// Reads the first band of a GeoTIFF, whose first bytes say whether it is big-endian: all of it, or the cells in `part`.
 pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>) -> Result<Raster, TerrainError> {
-    let bytes = memory::length(path).map_err(|error| TerrainError::read(path, error))?;
     let file = open(path)?;
     let size = [file.width() as usize, file.height() as usize];
     if part.is_none() {
         check_size(path, size)?;
     }
     check_compression(path, &file, big_endian)?;
-    let format = SampleFormat::of(&file).map_err(|error| refused(path, &error))?;
-    let [columns, rows] = size.map(|count| count as u64);
-    if (columns * rows).saturating_mul(u64::from(format.bits)) / 8 > bytes.saturating_mul(LARGEST_COMPRESSION) {
-        let what = format!("its header says {columns} x {rows} cells, which its {bytes} bytes cannot hold");
-        return Err(TerrainError::damaged(path, what));
-    }
+    let format = check_bytes(path, &file)?;
     let whole = place(path, &file)?;
     let window = match part {
         Some(part) => Window::within(&whole, size, part).ok_or_else(|| outside(path, part, &whole.outline(size)))?,
@@ -47,6 +41,18 @@ pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>) -> Resu
     Ok(Raster { columns, rows, values, georeference: whole.from_cell(window.first), warnings })
 }
 
+/// Refuses a file whose header says more than its bytes can hold; returns how it stores its samples.
+pub(super) fn check_bytes(path: &Path, file: &GeoTiffFile) -> Result<SampleFormat, TerrainError> {
+    let bytes = memory::length(path).map_err(|error| TerrainError::read(path, error))?;
+    let format = SampleFormat::of(file).map_err(|error| refused(path, &error))?;
+    let [columns, rows] = [file.width(), file.height()].map(u64::from);
+    if (columns * rows).saturating_mul(u64::from(format.bits)) / 8 > bytes.saturating_mul(LARGEST_COMPRESSION) {
+        let what = format!("its header says {columns} x {rows} cells, which its {bytes} bytes cannot hold");
+        return Err(TerrainError::damaged(path, what));
+    }
+    Ok(format)
+}
+
 /// What a file says of itself.
 pub(super) fn survey(path: &Path) -> Result<Survey, TerrainError> {
     let file = open(path)?;
@@ -61,7 +67,7 @@ pub(super) fn survey(path: &Path) -> Result<Survey, TerrainError> {
     })
 }
 
-fn open(path: &Path) -> Result<GeoTiffFile, TerrainError> {
+pub(super) fn open(path: &Path) -> Result<GeoTiffFile, TerrainError> {
     let file = match in_memory(path) {
         Some(bytes) => GeoTiffFile::from_bytes(bytes.to_vec()),
         None => GeoTiffFile::open(path),
@@ -79,7 +85,7 @@ fn nowhere(path: &Path) -> TerrainError {
 }
 
 /// Where the whole of a file lies; refuses turned and mirrored rasters.
-fn place(path: &Path, file: &GeoTiffFile) -> Result<Georeference, TerrainError> {
+pub(super) fn place(path: &Path, file: &GeoTiffFile) -> Result<Georeference, TerrainError> {
     let transform: &GeoTransform = file.transform().ok_or_else(|| nowhere(path))?;
     if transform.skew_x != 0.0 || transform.skew_y != 0.0 || transform.pixel_width < 0.0 {
         let what = "it is turned or mirrored against north; straighten it with `gdalwarp`";
@@ -96,12 +102,12 @@ fn place(path: &Path, file: &GeoTiffFile) -> Result<Georeference, TerrainError> 
 }
 
 /// True for a file whose first row is the south row.
-fn south_first(file: &GeoTiffFile) -> bool {
+pub(super) fn south_first(file: &GeoTiffFile) -> bool {
     file.transform().is_some_and(|transform| transform.pixel_height > 0.0)
 }
 
 /// What is wrong with a file that the library does not read.
-fn refused(path: &Path, error: &ReaderError) -> TerrainError {
+pub(super) fn refused(path: &Path, error: &ReaderError) -> TerrainError {
     let what = error.to_string();
     // The library's own error type, which has the cause, is not part of its interface.
     if what.contains("unsupported") {
@@ -122,14 +128,14 @@ fn check_compression(path: &Path, file: &GeoTiffFile, big_endian: bool) -> Resul
 }
 
 /// How a file stores its samples.
-struct SampleFormat {
+pub(super) struct SampleFormat {
     /// TIFF code: 1 unsigned, 2 signed, 3 floating point.
-    code: u16,
-    bits: u16,
+    pub(super) code: u16,
+    pub(super) bits: u16,
 }
 
 impl SampleFormat {
-    fn of(file: &GeoTiffFile) -> ReaderResult<Self> {
+    pub(super) fn of(file: &GeoTiffFile) -> ReaderResult<Self> {
         let image = file.tiff().ifd(file.base_ifd_index())?;
         let first = |values: Vec<u16>| values.first().copied().unwrap_or(1);
         Ok(Self { code: first(image.sample_format()?), bits: first(image.bits_per_sample()?) })

@@ -4,12 +4,14 @@ mod ascii;
 mod field;
 mod geotiff;
 mod memory;
+mod photo;
 mod survey;
 mod window;
 mod write;
 
 pub use field::RasterField;
 pub use memory::{hold_in_memory, in_memory};
+pub use photo::Photo;
 pub use survey::{Survey, survey};
 pub use window::{MapBox, Window};
 pub use write::{write_geotiff, write_raster, write_raster_exactly};

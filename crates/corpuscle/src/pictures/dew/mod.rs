@@ -113,7 +113,11 @@ impl Room {
         let fog = moment.frame.sets.iter().filter(|set| set.name == "unseen").flat_map(fog);
         let mut near =
             context.caps.caps(gpu, &self.stage, near, fog.filter(|patch| faces(patch.normal, patch.position)));
-        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.floor, &mut far];
+        let mut things: Vec<&mut dyn Drawable> = Vec::new();
+        if !context.target.transparent {
+            things.push(&mut self.floor);
+        }
+        things.push(&mut far);
         things.extend(self.solids.iter_mut().map(|solid| solid as &mut dyn Drawable));
         things.push(&mut near);
         let overlay = Overlay {

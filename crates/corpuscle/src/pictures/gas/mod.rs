@@ -78,7 +78,7 @@ impl Subject for GasPicture {
         things.extend(balls.iter_mut().map(|set| set as &mut dyn Drawable));
         things.push(&mut trajectories);
         if !flat {
-            if context.quality == Quality::Full {
+            if context.quality == Quality::Full && !context.target.transparent {
                 let floor = self.floor.get_or_insert_with(|| Floor::new(&context.renderer, stage.from.z));
                 floor.lay_at(stage.from.z);
                 things.push(floor);

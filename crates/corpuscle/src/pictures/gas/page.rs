@@ -39,13 +39,13 @@ impl GasPicture {
             borders: if flat { sides::borders(&self.gas, view, moment.frame.time) } else { Vec::new() },
             marks: if flat { self.marks(moment) } else { Vec::new() },
             labels: self.gas.measure.region.iter().map(label).collect(),
-            scale_bar: None,
             axes: Some(Axes {
                 from: view.stage.from.into(),
                 to: view.stage.to.into(),
                 unit: unit.into(),
                 heights: 1.0,
             }),
+            ..Overlay::default()
         }
     }
 
