@@ -233,14 +233,13 @@ fn built_in_floods_of_scheme_voronoi_go_as_on_the_cpu() {
 const AIR: [(u64, [f64; 4]); 2] = [(1, [3e-8, 3e-6, 1e-5, 1e-8]), (9, [1e-7, 2e-5, 1e-4, 1e-7])];
 
 /// Drops on the CPU beside air on the GPU are the same drops; of hundreds one may have merged and the other not.
-#[test]
-fn built_in_dew_goes_as_on_the_cpu() {
+fn dew_goes_as_on_the_cpu(scenes: &[(&str, f64, &str)]) {
     if require_gpu("built-in dew on the GPU").is_none() {
         return;
     }
     // Those of drops and pairs, which are few, and fog that is only just there.
     let of_few = ["number", "drops", "covered_area", "covered_part", "mean_radius", "wall_pairs", "fog"];
-    for (name, time, spacing) in DEW {
+    for &(name, time, spacing) in scenes {
         let mut both = both_from(name, time, &[("dew.spacing_m", spacing)]);
         for (steps, [place, velocity, temperature, part]) in AIR {
             step(&mut both, steps);
@@ -257,6 +256,17 @@ fn built_in_dew_goes_as_on_the_cpu() {
         };
         assert_totals(name, both.each_ref().map(Simulation::model), bound);
     }
+}
+
+#[test]
+fn the_pane_goes_as_on_the_cpu() {
+    dew_goes_as_on_the_cpu(&DEW[..1]);
+}
+
+#[test]
+#[ignore = "takes minutes without a GPU; cargo test --release --workspace --test gpu -- --ignored"]
+fn all_built_in_dew_goes_as_on_the_cpu() {
+    dew_goes_as_on_the_cpu(&DEW);
 }
 
 /// What the GPU cannot compute says so by name; what it can is in the lists above.

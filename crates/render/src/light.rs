@@ -23,7 +23,14 @@ pub struct Light {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Backdrop {
     /// A clear sky with the sun in it.
-    Sky,
+    Sky {
+        /// Overhead.
+        above: [f32; 3],
+        /// At the horizon.
+        horizon: [f32; 3],
+        /// Of the ground, seen straight down.
+        below: [f32; 3],
+    },
     /// A colour overhead, one at the horizon and one below it.
     Studio {
         /// Overhead.
@@ -50,7 +57,9 @@ impl Light {
     /// A clear afternoon.
     pub fn day() -> Self {
         let (sun, sunlight) = ([2.5, 0.75], [2.3, 2.15, 1.9]);
-        Self { sun, sunlight, softness: 0.02, ambient: 0.75, backdrop: Backdrop::Sky, shadows: true }
+        let backdrop =
+            Backdrop::Sky { above: [0.10, 0.25, 0.62], horizon: [0.66, 0.77, 0.90], below: [0.60, 0.63, 0.65] };
+        Self { sun, sunlight, softness: 0.02, ambient: 0.75, backdrop, shadows: true }
     }
 
     /// A bright room.
@@ -96,8 +105,9 @@ impl Light {
     /// The clear colour where the background is not drawn: of paper, or at the horizon.
     pub(crate) fn plain_backdrop(&self) -> [f32; 3] {
         match self.backdrop {
-            Backdrop::Sky => [0.66, 0.77, 0.90],
-            Backdrop::Studio { horizon, .. } | Backdrop::Room { horizon, .. } => horizon,
+            Backdrop::Sky { horizon, .. } | Backdrop::Studio { horizon, .. } | Backdrop::Room { horizon, .. } => {
+                horizon
+            }
             Backdrop::Paper(colour) => colour,
         }
     }

@@ -1,6 +1,39 @@
-// Smooth noise in space.
+// Numbers that look random and smooth noise made of them, in the plane and in space (Hoskins, "Hash without sine", 2014).
 
-// A number from 0 to 1 for a place (Hoskins, "Hash without sine").
+// A number from 0 to 1 for a place in the plane.
+fn scattered(at: vec2f) -> f32 {
+    let bent = fract(at.xyx * 0.1031);
+    let turned = bent + dot(bent, bent.yzx + 33.33);
+    return fract((turned.x + turned.y) * turned.z);
+}
+
+// Smooth noise from 0 to 1 with bumps of length 1, and its slope.
+struct Bumps {
+    height: f32,
+    slope: vec2f,
+}
+
+fn bumps(at: vec2f) -> Bumps {
+    let cell = floor(at);
+    let part = at - cell;
+    // Smooth to the second derivative (Perlin, "Improving Noise", 2002).
+    let blend = part * part * part * (part * (part * 6.0 - 15.0) + 10.0);
+    let change = 30.0 * part * part * (part * (part - 2.0) + 1.0);
+    let low = vec2f(scattered(cell), scattered(cell + vec2f(1.0, 0.0)));
+    let high = vec2f(scattered(cell + vec2f(0.0, 1.0)), scattered(cell + vec2f(1.0, 1.0)));
+    let rows = mix(low, high, blend.y);
+    let columns = mix(vec2f(low.x, high.x), vec2f(low.y, high.y), blend.x);
+    return Bumps(mix(rows.x, rows.y, blend.x), change * vec2f(rows.y - rows.x, columns.y - columns.x));
+}
+
+// Three numbers from 0 to 1 for a place in the plane.
+fn three_scattered(at: vec2f) -> vec3f {
+    var mixed = fract(at.xyx * vec3f(0.1031, 0.1030, 0.0973));
+    mixed += dot(mixed, mixed.yxz + 33.33);
+    return fract((mixed.xxy + mixed.yzz) * mixed.zyx);
+}
+
+// A number from 0 to 1 for a place in space.
 fn scattered_in_space(place: vec3f) -> f32 {
     let bent = fract(place * 0.1031);
     let turned = bent + dot(bent, bent.zyx + 31.32);

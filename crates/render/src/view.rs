@@ -77,7 +77,7 @@ fn uniform(
         Lens::Orthographic { height } => (0.0, stage.length(height)),
     };
     let ([above, horizon, below], kind) = match light.backdrop {
-        Backdrop::Sky => ([[0.10, 0.25, 0.62], [0.66, 0.77, 0.90], [0.60, 0.63, 0.65]], 0.0),
+        Backdrop::Sky { above, horizon, below } => ([above, horizon, below], 0.0),
         Backdrop::Studio { above, horizon, below } => ([above, horizon, below], 1.0),
         Backdrop::Room { above, horizon, below } => ([above, horizon, below], 1.25),
         Backdrop::Paper(colour) => ([colour; 3], 2.0),

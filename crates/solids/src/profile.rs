@@ -10,6 +10,36 @@ use std::f64::consts::PI;
 pub struct Profile {
     /// Corners `[distance, place]`, in turn so that the solid is on the left of its edges; the last is joined to the first.
     corners: Vec<[f64; 2]>,
+    /// Boxes round runs of edges.
+    runs: Vec<Run>,
+}
+
+/// Edges of a run.
+const RUN: usize = 8;
+/// How much nearer than it is a box may be found by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Edges one after another that bound the solid, and the box round them.
+#[derive(Debug, Clone, PartialEq)]
+struct Run {
+    edges: Vec<[[f64; 2]; 2]>,
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Run {
+    fn of(edges: &[[[f64; 2]; 2]]) -> Self {
+        let along = |axis: usize| edges.iter().flatten().map(move |corner| corner[axis]);
+        let low = [0, 1].map(|axis| along(axis).fold(f64::INFINITY, f64::min));
+        let high = [0, 1].map(|axis| along(axis).fold(f64::NEG_INFINITY, f64::max));
+        Self { edges: edges.to_vec(), low, high }
+    }
+
+    /// Squared distance of its box: no edge is nearer.
+    fn distance2(&self, point: [f64; 2]) -> f64 {
+        let outside = |axis: usize| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(0.0);
+        outside(0) * outside(0) + outside(1) * outside(1)
+    }
 }
 
 impl Profile {
@@ -37,21 +67,25 @@ impl Profile {
         if area < 0.0 {
             corners.reverse();
         }
-        Ok(Self { corners })
+        // Edges on the axis bound nothing.
+        let outer: Vec<_> = edges(&corners).filter(|[a, b]| a[0] > 0.0 || b[0] > 0.0).collect();
+        let runs = outer.chunks(RUN).map(Run::of).collect();
+        Ok(Self { corners, runs })
     }
 
     fn edges(&self) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
         edges(&self.corners)
     }
 
-    /// Edges but those on the axis, which bound nothing.
-    fn outer_edges(&self) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
-        self.edges().filter(|[a, b]| a[0] > 0.0 || b[0] > 0.0)
-    }
-
     /// Signed distance, negative inside, and its gradient.
     pub(crate) fn nearest(&self, point: [f64; 2]) -> (f64, [f64; 2]) {
-        let nearest = self.outer_edges().map(|edge| (from_edge(point, edge), edge));
+        let nearest_of =
+            |run: &Run| run.edges.iter().map(|edge| from_edge(point, *edge).0).fold(f64::INFINITY, f64::min);
+        let first = self.runs.iter().min_by(|a, b| a.distance2(point).total_cmp(&b.distance2(point)));
+        let most_of = |run: &Run| (nearest_of(run) * (1.0 + ROUNDING)).max(run.distance2(point));
+        let at_most = first.map_or(f64::INFINITY, most_of);
+        let near = self.runs.iter().filter(|run| run.distance2(point) <= at_most).flat_map(|run| &run.edges);
+        let nearest = near.map(|edge| (from_edge(point, *edge), *edge));
         let ((_, away), edge) = nearest.min_by(|a, b| a.0.0.total_cmp(&b.0.0)).expect("a profile has outer edges");
         let sign = if self.contains(point) { -1.0 } else { 1.0 };
         let (length, direction) = length_and_direction(away);
@@ -61,7 +95,9 @@ impl Profile {
 
     /// Whether a ray away from the axis leaves through an odd number of edges.
     fn contains(&self, point: [f64; 2]) -> bool {
-        let crossed = self.edges().filter(|[a, b]| {
+        // Edges on the axis are crossed by none.
+        let beside = |run: &&Run| run.low[1] <= point[1] && point[1] <= run.high[1] && point[0] <= run.high[0];
+        let crossed = self.runs.iter().filter(beside).flat_map(|run| &run.edges).filter(|[a, b]| {
             let between = (a[1] > point[1]) != (b[1] > point[1]);
             between && point[0] < a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
         });
@@ -139,4 +175,42 @@ fn fold_back(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> bool {
     let (shared, end, far) = if one[1] == other[0] { (one[1], one[0], other[1]) } else { (one[0], one[1], other[0]) };
     let along = (end[0] - shared[0]) * (far[0] - shared[0]) + (end[1] - shared[1]) * (far[1] - shared[1]);
     turn(shared, end, far) == 0.0 && along > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The distance found from all edges, one by one.
+    fn of_all_edges(profile: &Profile, point: [f64; 2]) -> f64 {
+        let outer = profile.edges().filter(|[a, b]| a[0] > 0.0 || b[0] > 0.0);
+        let nearest = outer.map(|edge| from_edge(point, edge).0).fold(f64::INFINITY, f64::min).sqrt();
+        let crossed = profile.edges().filter(|[a, b]| {
+            let between = (a[1] > point[1]) != (b[1] > point[1]);
+            between && point[0] < a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+        });
+        if crossed.count() % 2 == 1 { -nearest } else { nearest }
+    }
+
+    proptest! {
+        /// A star with many corners, some of them on the axis: boxes leave out no edge that counts.
+        #[test]
+        fn the_nearest_of_all_edges_is_found(
+            lengths in prop::collection::vec(0.2..1.0_f64, 3..90),
+            points in prop::collection::vec([0.0..2.0_f64, -2.0..2.0], 40),
+        ) {
+            let count = lengths.len() as f64;
+            let corner = |(k, length): (usize, &f64)| {
+                let angle = -0.5 * PI + PI * (k as f64 + 0.5) / count;
+                [length * angle.cos(), length * angle.sin()]
+            };
+            let ends = [[0.0, 1.0], [0.0, -1.0]];
+            let corners: Vec<[f64; 2]> = lengths.iter().enumerate().map(corner).chain(ends).collect();
+            let profile = Profile::new(corners).unwrap();
+            for point in points {
+                prop_assert_eq!(profile.nearest(point).0, of_all_edges(&profile, point));
+            }
+        }
+    }
 }

@@ -55,8 +55,7 @@ fn colours_of_every_kind_are_read() {
     assert_eq!((worst(&path, WHOLE), worst(&path, PART)), (0, 0));
     let (_folder, path) = write(&builder(3).compression(Compression::Deflate), 3, |v| u16::from(v) * 257);
     assert_eq!((worst(&path, WHOLE), worst(&path, PART)), (0, 0));
-    let jpeg =
-        builder(3).compression(Compression::Jpeg).jpeg_options(JpegOptions { quality: 95, ..JpegOptions::default() });
+    let jpeg = builder(3).compression(Compression::Jpeg).jpeg_options(JpegOptions { quality: 95 });
     let (_folder, path) = write(&jpeg.photometric(PhotometricInterpretation::YCbCr), 3, |v| v);
     assert!(worst(&path, WHOLE) < 40, "{}", worst(&path, WHOLE));
 }

@@ -56,7 +56,8 @@ test("every scene of the gallery starts and plays", { timeout: 1_800_000 }, asyn
   assert.ok(links.length > 20, `${links.length} scenes`);
   for (const link of links) {
     const scene = link.split("#")[1];
-    const stage = await Stage.open(browser, `${address}/${link}`);
+    // Small, so that software in place of a GPU draws it soon.
+    const stage = await Stage.open(browser, `${address}/${link}`, { width: 1000, height: 640 });
     try {
       if (refused[scene]) {
         const { error } = await stage.until(`${scene} is refused`, (state) => state.error);

@@ -1,7 +1,7 @@
 //! Where the sun stands over a flood: beside the camera, in a direction, or as it does at a place, a day and an hour.
 
 use crate::Error;
-use corpuscle_render::Light;
+use corpuscle_render::{Backdrop, Light};
 use corpuscle_terrain::Terrain;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::str::FromStr;
@@ -47,8 +47,21 @@ impl Sun {
         }
         let sun = [FRAC_PI_2 - bearing.to_radians(), height.to_radians()].map(|angle| angle as f32);
         let more = air_mass(height) - air_mass(f64::from(day.sun[1]).to_degrees());
-        let sunlight = std::array::from_fn(|k| day.sunlight[k] * (-DEPTH_OF_AIR[k] * more).exp() as f32);
-        Ok(Light { sun, sunlight, ..day })
+        let left = DEPTH_OF_AIR.map(|depth| (-depth * more).exp() as f32);
+        let sunlight = std::array::from_fn(|k| day.sunlight[k] * left[k]);
+        Ok(Light { sun, sunlight, backdrop: sky(day.backdrop, left), ..day })
+    }
+}
+
+/// The sky where these parts of red, green and blue sunlight are left. Light from the sky is a fixed part of the sun's (clear-sky model of ASHRAE,
+/// Handbook of Fundamentals, 1985, chapter 27); towards the horizon it takes on some of its colour.
+fn sky(day: Backdrop, left: [f32; 3]) -> Backdrop {
+    let Backdrop::Sky { above, horizon, below } = day else { return day };
+    let dimmed = |colour: [f32; 3]| colour.map(|part| part * left[1]);
+    Backdrop::Sky {
+        above: dimmed(above),
+        horizon: std::array::from_fn(|k| horizon[k] * left[k].sqrt() * left[1].sqrt()),
+        below: dimmed(below),
     }
 }
 
@@ -172,6 +185,12 @@ mod tests {
             low.sunlight[0] < high.sunlight[0]
                 && low.sunlight[2] / low.sunlight[0] < 0.5 * high.sunlight[2] / high.sunlight[0]
         );
+        let horizon = |light: &Light| {
+            let Backdrop::Sky { horizon, .. } = light.backdrop else { panic!("{:?}", light.backdrop) };
+            horizon
+        };
+        assert!(horizon(&low)[1] < 0.5 * horizon(&high)[1]);
+        assert!(horizon(&low)[2] / horizon(&low)[0] < 0.7 * horizon(&high)[2] / horizon(&high)[0]);
         // A bearing of 135 degrees is south-east.
         let towards = high.towards_sun();
         assert!(towards.x > 0.0 && (towards.x + towards.y).abs() < 1e-6);

@@ -1,5 +1,6 @@
 // What is behind everything, by direction: seen, mirrored, and as light from all round.
 #import view
+#import noise
 
 // A window of four panes in a wall towards the sun.
 fn window(direction: vec3f) -> vec3f {
@@ -13,13 +14,6 @@ fn window(direction: vec3f) -> vec3f {
     return 2.6 * inside.x * inside.y * vec3f(0.95, 1.0, 1.06);
 }
 
-// Three numbers from 0 to 1 that look random, for a cell of a grid (Hoskins, "Hash without sine").
-fn of_cell(cell: vec2f) -> vec3f {
-    var mixed = fract(cell.xyx * vec3f(0.1031, 0.1030, 0.0973));
-    mixed += dot(mixed, mixed.yxz + 33.33);
-    return fract((mixed.xxy + mixed.yzz) * mixed.zyx);
-}
-
 // How far what is out of focus is spread, radians; and how far the street's end lies below the room.
 const OUT_OF_FOCUS: f32 = 0.016;
 const BELOW: f32 = 0.2;
@@ -31,8 +25,8 @@ const LIGHTS: f32 = 150.0;
 fn houses(turn: f32, height: f32, count: f32, row: f32, tallest: f32, missing: f32) -> vec4f {
     let along = turn * count;
     let house = floor(along);
-    let own = of_cell(vec2f(house, row));
-    let beside = of_cell(vec2f((house + select(-1.0, 1.0, along - house > 0.5) + count) % count, row));
+    let own = three_scattered(vec2f(house, row));
+    let beside = three_scattered(vec2f((house + select(-1.0, 1.0, along - house > 0.5) + count) % count, row));
     let tall = tallest * vec2f(0.35 + 0.65 * own.x, 0.35 + 0.65 * beside.x);
     let roof = select(tall, vec2f(-0.2), vec2f(own.z, beside.z) < vec2f(missing));
     // Half a neighbour at the wall that two houses share.
@@ -50,7 +44,7 @@ fn lights(turn: f32, height: f32) -> vec3f {
     let at = LIGHTS * vec2f(turn, height / (2.0 * PI));
     for (var k = 0; k < 4; k++) {
         let cell = floor(at - 0.5) + vec2f(f32(k & 1), f32(k >> 1));
-        let own = of_cell(vec2f((cell.x + LIGHTS) % LIGHTS, cell.y + 7.0));
+        let own = three_scattered(vec2f((cell.x + LIGHTS) % LIGHTS, cell.y + 7.0));
         let is_lit = own.z > 0.78 && cell.y > -3.5 && cell.y < 2.5;
         let away = length(at - cell - 0.25 - 0.5 * own.xy);
         let disc = (1.0 - smoothstep(0.30, 0.38, away)) * (0.75 + 0.25 * smoothstep(0.15, 0.33, away));
