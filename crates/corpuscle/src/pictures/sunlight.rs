@@ -20,6 +20,8 @@ pub enum Sun {
 
 /// Optical depth of the air overhead for red, green and blue light, a clear sky (Rayleigh scattering and some aerosol).
 const DEPTH_OF_AIR: [f64; 3] = [0.10, 0.15, 0.28];
+/// How much of what light there is less a camera makes up for, as eyes do: 1 for all.
+const EXPOSED: f32 = 0.6;
 /// Lowest height of the sun that is drawn, degrees: shadows would be without end.
 const LOWEST: f64 = 2.0;
 
@@ -48,6 +50,8 @@ impl Sun {
         let sun = [FRAC_PI_2 - bearing.to_radians(), height.to_radians()].map(|angle| angle as f32);
         let more = air_mass(height) - air_mass(f64::from(day.sun[1]).to_degrees());
         let left = DEPTH_OF_AIR.map(|depth| (-depth * more).exp() as f32);
+        let exposure = left[1].powf(-EXPOSED);
+        let left = left.map(|part| exposure * part);
         let sunlight = std::array::from_fn(|k| day.sunlight[k] * left[k]);
         Ok(Light { sun, sunlight, backdrop: sky(day.backdrop, left), ..day })
     }
@@ -189,7 +193,7 @@ mod tests {
             let Backdrop::Sky { horizon, .. } = light.backdrop else { panic!("{:?}", light.backdrop) };
             horizon
         };
-        assert!(horizon(&low)[1] < 0.5 * horizon(&high)[1]);
+        assert!(horizon(&low)[1] < 0.8 * horizon(&high)[1]);
         assert!(horizon(&low)[2] / horizon(&low)[0] < 0.7 * horizon(&high)[2] / horizon(&high)[0]);
         // A bearing of 135 degrees is south-east.
         let towards = high.towards_sun();

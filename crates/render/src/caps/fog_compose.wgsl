@@ -6,9 +6,9 @@
 @group(1) @binding(1) var behind: texture_2d<f32>;
 @group(1) @binding(2) var behind_sampler: sampler;
 
-const TAPS: i32 = 32;
+const TAPS: i32 = 48;
 // Radius of the blur behind dense fog, part of the picture's height, and the part of light that comes back from it.
-const BLUR: f32 = 0.03;
+const BLUR: f32 = 0.045;
 const WHITE: f32 = 0.42;
 
 @fragment
@@ -17,8 +17,8 @@ fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     if area < 0.002 {
         discard;
     }
-    // Droplets lie at random, one partly over the other.
-    let part = 1.0 - exp(-area);
+    // Droplets do not overlap: they merge where they touch.
+    let part = min(area, 1.0);
     let uv = pixel.xy / view.frame.xy;
     let radius = BLUR * sqrt(part) * vec2f(view.frame.y / view.frame.x, 1.0);
     var blurred = vec3f(0.0);
