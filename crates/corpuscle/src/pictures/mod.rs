@@ -5,6 +5,8 @@ mod device;
 pub(crate) mod dew;
 pub(crate) mod flood;
 pub(crate) mod flood_sketch;
+#[cfg(all(test, feature = "gpu"))]
+mod flood_surface;
 pub(crate) mod gas;
 mod ground_style;
 mod lines;
