@@ -2,7 +2,9 @@
 
 use super::{none, on_file};
 use crate::Target;
-use corpuscle_terrain::{MapBox, read_raster, read_raster_part, read_rasters, summarize};
+use corpuscle_terrain::{
+    Bounds, MapBox, Photo, Terrain, TerrainError, Window, read_raster, read_raster_part, read_rasters, summarize,
+};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use std::io::Write;
@@ -10,6 +12,7 @@ use std::path::Path;
 
 pub(super) const TARGETS: &[Target] = &[
     Target { name: "geotiff", about: "GeoTIFF", corpus: "geotiff", read: geotiff, more: none },
+    Target { name: "photo", about: "aerial photos, GeoTIFF", corpus: "photo", read: photo, more: none },
     Target { name: "ascii", about: "ESRI ASCII grids", corpus: "ascii", read: ascii, more: none },
     Target { name: "ascii-gz", about: "ESRI ASCII grids, compressed", corpus: "ascii-gz", read: ascii_gz, more: none },
 ];
@@ -36,6 +39,18 @@ fn without(message: &str, path: &Path) -> String {
 
 fn geotiff(bytes: &[u8]) -> Result<String, String> {
     on_file("a.tif", bytes, by_all)
+}
+
+fn photo(bytes: &[u8]) -> Result<String, String> {
+    on_file("a.tif", bytes, |path| {
+        let words = |error: TerrainError| without(&error.to_string(), path);
+        let bounds = Bounds { x_min: 100.0, x_max: 340.0, y_min: 140.0, y_max: 300.0 };
+        let terrain = Terrain::gridded(bounds, 20.0, |_, _| 0.0);
+        let photo = Photo::open(path).map_err(words)?;
+        let place = photo.pixel(&terrain, [200.0, 200.0]);
+        let rgba = photo.read(Window::whole(photo.size())).map_err(words)?;
+        Ok(format!("{place:?} {}", rgba.len()))
+    })
 }
 
 fn ascii(bytes: &[u8]) -> Result<String, String> {
