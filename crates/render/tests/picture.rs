@@ -264,6 +264,31 @@ fn what_stands_is_kept_until_something_changes() {
 }
 
 #[test]
+fn a_picture_without_background_shows_the_same_things() {
+    let Some(table) = Table::open("a picture without background") else { return };
+    let gpu = table.renderer.gpu();
+    let target = Target::new(gpu, SIZE, 2).unwrap().without_background(true);
+    let bare = Table { renderer: Renderer::new(gpu), target };
+    // Without floor, which would be all round, and without overlay.
+    let (whole, alone) = (gas(&table, "fo"), gas(&bare, "fo"));
+    let pixels = || (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
+    let mut counts = [0; 3];
+    for (x, y) in pixels() {
+        let [shown, own] = [whole.pixel(x, y), alone.pixel(x, y)];
+        match own[3] {
+            0 => counts[0] += 1,
+            255 => {
+                counts[1] += 1;
+                assert_eq!(shown, own, "at {x}, {y}");
+            }
+            _ => counts[2] += 1,
+        }
+    }
+    assert_eq!(alone.pixel(2, 2)[3], 0);
+    assert!(counts.iter().all(|count| *count > 1000), "{counts:?}");
+}
+
+#[test]
 fn what_stands_and_its_shadows_are_kept_while_only_water_moves() {
     let Some(table) = Table::open("what stands in the sun") else { return };
     let gpu = table.renderer.gpu();
