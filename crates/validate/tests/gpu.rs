@@ -146,6 +146,7 @@ fn floods_of_scheme_voronoi_are_on_the_gpu_what_they_are_on_the_cpu() {
 
 /// In a test of its own, so that both run beside each other.
 #[test]
+#[ignore = "takes minutes without a GPU; cargo test --release --workspace --test gpu -- --ignored"]
 fn more_floods_of_scheme_voronoi_are_on_the_gpu_what_they_are_on_the_cpu() {
     let Some(gpu) = require_gpu("more cases of scheme voronoi on the GPU") else { return };
     compare(gpu, &MORE_VORONOI);
@@ -166,6 +167,7 @@ fn what_takes_longest_is_on_the_gpu_what_it_is_on_the_cpu() {
 
 /// At full size, which is small.
 #[test]
+#[ignore = "takes minutes without a GPU; cargo test --release --workspace --test gpu -- --ignored"]
 fn dew_keeps_its_bounds_on_the_gpu() {
     let Some(gpu) = require_gpu("cases of dew on the GPU") else { return };
     let options = on_gpu(gpu);
