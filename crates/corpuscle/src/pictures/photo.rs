@@ -15,9 +15,8 @@ const MOST_PIXELS: f64 = 4096.0;
 
 /// Endings of GeoTIFF files.
 const GEOTIFF: [&str; 2] = ["tif", "tiff"];
-/// Meshes each way between whose corners places on Earth are converted linearly: over a terrain projections bend by far less than a pixel
-/// within one.
-const MESHES: usize = 32;
+/// Cells each way of the grid between whose nodes positions are interpolated: over a terrain projections bend by far less than a pixel within one.
+const GRID_CELLS: usize = 32;
 
 /// The picture of a file, PNG or GeoTIFF, as it lies on a terrain, from corner to corner, where `natural` shows beside it.
 ///
@@ -38,35 +37,36 @@ pub(super) fn photo(path: &Path, terrain: &Terrain, natural: &Image) -> Result<I
     let in_file = |what: &str| wrong(format!("its world file {}: {what}", file.display()));
     let text = fs::read_to_string(&file).map_err(|error| in_file(&error.to_string()))?;
     let world = World::parse(&text).ok_or_else(|| in_file("six numbers are wanted, the size of a pixel not 0"))?;
-    let places = Places::over(terrain, |position| Some(world.pixel(terrain.to_own(position))));
-    places.lay(&photo, natural).ok_or_else(|| in_file("the picture lies beside the terrain"))
+    let grid = PixelGrid::over(terrain, |position| Some(world.pixel(terrain.to_own(position))));
+    grid.lay(&photo, natural).ok_or_else(|| in_file("the picture lies beside the terrain"))
 }
 
 /// The same of a GeoTIFF, of which only the part over the terrain is read.
 fn of_geotiff(path: &Path, terrain: &Terrain, natural: &Image) -> Result<Image, Error> {
     let beside = || Error::GroundPicture { path: path.into(), what: "it lies beside the terrain".into() };
     let photo = Photo::open(path)?;
-    let places = Places::over(terrain, |position| photo.pixel(terrain, position));
-    let window = places.window(photo.size()).ok_or_else(beside)?;
+    let grid = PixelGrid::over(terrain, |position| photo.pixel(terrain, position));
+    let window = grid.window(photo.size()).ok_or_else(beside)?;
     let [width, height] = window.size.map(|length| length as u32);
     let part = Image { width, height, rgba: photo.read(window)? };
     let [column, row] = window.first.map(|first| first as f64);
-    places.moved([-column, -row]).lay(&part, natural).ok_or_else(beside)
+    grid.moved([-column, -row]).lay(&part, natural).ok_or_else(beside)
 }
 
-/// Column and row of a picture over a terrain: at the corners of meshes, row by row from the north-west; none where it has no place.
-struct Places {
+/// Columns and rows of a picture at the nodes of a grid over a terrain, row by row from the north-west; none where the terrain's position has no
+/// counterpart.
+struct PixelGrid {
     nodes: Vec<Option<[f64; 2]>>,
 }
 
-impl Places {
+impl PixelGrid {
     /// Those that a function gives at positions, m.
     fn over(terrain: &Terrain, pixel: impl Fn([f64; 2]) -> Option<[f64; 2]>) -> Self {
         let bounds = terrain.bounds();
-        let part = |node: usize| node as f64 / MESHES as f64;
+        let part = |node: usize| node as f64 / GRID_CELLS as f64;
         let x = |node: usize| bounds.x_min + part(node) * (bounds.x_max - bounds.x_min);
         let y = |node: usize| bounds.y_max - part(node) * (bounds.y_max - bounds.y_min);
-        let nodes = (0..=MESHES).flat_map(|row| (0..=MESHES).map(move |column| (column, row)));
+        let nodes = (0..=GRID_CELLS).flat_map(|row| (0..=GRID_CELLS).map(move |column| (column, row)));
         Self { nodes: nodes.map(|(column, row)| pixel([x(column), y(row)])).collect() }
     }
 
@@ -79,8 +79,9 @@ impl Places {
     /// The part of a picture of a size that lies on the terrain, with a pixel round it; none where none does.
     fn window(&self, size: [usize; 2]) -> Option<Window> {
         let along = |axis: usize| {
-            let places = || self.nodes.iter().flatten().map(move |node| node[axis]);
-            let (low, high) = (places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max));
+            let along_axis = || self.nodes.iter().flatten().map(move |node| node[axis]);
+            let (low, high) =
+                (along_axis().fold(f64::INFINITY, f64::min), along_axis().fold(f64::NEG_INFINITY, f64::max));
             let (low, high) = ((low - 1.0).floor().max(0.0), (high + 2.0).ceil().min(size[axis] as f64));
             (low < high).then_some((low as usize, (high - low) as usize))
         };
@@ -88,12 +89,12 @@ impl Places {
         Some(Window { first: [column, row], size: [columns, rows] })
     }
 
-    /// The place at parts of the terrain's sides, from the north-west.
+    /// Column and row at parts of the terrain's sides, from the north-west.
     fn at(&self, x: f64, y: f64) -> Option<[f64; 2]> {
-        let mesh = |part: f64| ((part * MESHES as f64).floor().clamp(0.0, MESHES as f64 - 1.0)) as usize;
-        let (column, row) = (mesh(x), mesh(y));
-        let (right, down) = (x * MESHES as f64 - column as f64, y * MESHES as f64 - row as f64);
-        let node = |column: usize, row: usize| self.nodes[row * (MESHES + 1) + column];
+        let cell = |part: f64| ((part * GRID_CELLS as f64).floor().clamp(0.0, GRID_CELLS as f64 - 1.0)) as usize;
+        let (column, row) = (cell(x), cell(y));
+        let (right, down) = (x * GRID_CELLS as f64 - column as f64, y * GRID_CELLS as f64 - row as f64);
+        let node = |column: usize, row: usize| self.nodes[row * (GRID_CELLS + 1) + column];
         let [a, b] = [node(column, row)?, node(column + 1, row)?];
         let [c, d] = [node(column, row + 1)?, node(column + 1, row + 1)?];
         let along = |a: f64, b: f64| a + right * (b - a);
@@ -102,12 +103,12 @@ impl Places {
 
     /// The picture from corner to corner of the terrain, as fine as it is there; none where it lies beside it.
     fn lay(&self, photo: &Image, natural: &Image) -> Option<Image> {
-        // Pixels of the photo along two sides of a mesh in the middle, times the meshes.
+        // Pixels of the photo along two sides of a cell in the middle, times the cells.
         let middle = 0.5;
-        let next = middle + 1.0 / MESHES as f64;
+        let next = middle + 1.0 / GRID_CELLS as f64;
         let length = |to: Option<[f64; 2]>| {
             let (from, to) = (self.at(middle, middle)?, to?);
-            Some((to[0] - from[0]).hypot(to[1] - from[1]) * MESHES as f64)
+            Some((to[0] - from[0]).hypot(to[1] - from[1]) * GRID_CELLS as f64)
         };
         let lengths = [length(self.at(next, middle)), length(self.at(middle, next))];
         let least = [natural.width, natural.height];
@@ -119,7 +120,7 @@ impl Places {
             for column in 0..size[0] {
                 let [x, y] = [(column, size[0]), (row, size[1])].map(|(at, of)| (f64::from(at) + 0.5) / f64::from(of));
                 let own = natural.pixel((x * f64::from(natural.width)) as u32, (y * f64::from(natural.height)) as u32);
-                let seen = self.at(x, y).and_then(|place| bilinear(photo, place)).filter(|seen| seen[3] > 127);
+                let seen = self.at(x, y).and_then(|at| bilinear(photo, at)).filter(|seen| seen[3] > 127);
                 is_seen |= seen.is_some();
                 // Where the terrain has no data there is none to be seen.
                 let [red, green, blue, _] = seen.unwrap_or(own);
@@ -196,7 +197,7 @@ mod tests {
     /// The photo on a terrain, with the lines of its world file.
     fn laid(world: &str, terrain: &Terrain, natural: &Image) -> Option<Image> {
         let world = World::parse(world).unwrap();
-        Places::over(terrain, |position| Some(world.pixel(terrain.to_own(position)))).lay(&photo(), natural)
+        PixelGrid::over(terrain, |position| Some(world.pixel(terrain.to_own(position)))).lay(&photo(), natural)
     }
 
     #[test]
