@@ -20,6 +20,7 @@ mod export;
 mod interrupt;
 mod output;
 mod picture_options;
+mod processes;
 mod progress;
 mod refusal;
 mod render;

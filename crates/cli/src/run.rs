@@ -4,12 +4,12 @@ use crate::args::{Backend, RunOptions};
 use crate::interrupt::stop_on_interrupt;
 use crate::output::{duration, number, print_json, rate};
 use crate::picture_options::picture_settings;
+use crate::processes::{follow, processes, read, read_of_run};
 use crate::progress::{Bar, while_shown};
-use crate::scene_argument;
-use crate::terrain::fetch_for;
 use anyhow::anyhow;
 use corpuscle::model::ModelError;
 use corpuscle::output::{FrameFormat, Status, Summary, next_run_folder, put_into_report};
+use corpuscle::processes::Processes;
 use corpuscle::{Choice, Filming, Recorder, Simulation, Sink};
 use std::path::Path;
 use std::process::ExitCode;
@@ -18,11 +18,18 @@ use std::sync::atomic::AtomicBool;
 
 /// Runs a scene, or resumes an interrupted run.
 pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
+    let processes = processes()?;
+    if !processes.is_first() {
+        return Ok(follow(&processes, options));
+    }
     let stop = stop_on_interrupt()?;
     let (mut simulation, mut recorder) = match &options.resume {
-        Some(folder) => resume(folder, options.backend)?,
-        None => start(options, &stop)?,
+        Some(folder) => resume(&processes, folder, options.backend)?,
+        None => start(&processes, options, &stop)?,
     };
+    if processes.count() > 1 {
+        tell!("computing on {} processes", processes.count());
+    }
     for note in simulation.notes() {
         tell!("note: {note}");
     }
@@ -67,10 +74,15 @@ fn filming(options: &RunOptions, simulation: &Simulation, folder: &Path) -> anyh
     }
 }
 
-fn resume(folder: &Path, backend: Backend) -> anyhow::Result<(Simulation, Recorder)> {
-    let (mut simulation, recorder) = Recorder::resume(folder)?;
+fn resume(processes: &Processes, folder: &Path, backend: Backend) -> anyhow::Result<(Simulation, Recorder)> {
+    if processes.count() > 1 {
+        read_of_run(processes, folder)?;
+    }
+    let open = |scene| Simulation::open_to_restore_on(processes, scene, folder);
+    let (mut simulation, recorder) = Recorder::resume_with(folder, open)?;
     match backend {
         // So that an interruption does not change the backend, and with it the last digits.
+        Backend::Auto if processes.count() > 1 => {}
         Backend::Auto => tell!("resuming on the CPU; `--backend gpu` resumes on a GPU"),
         _ => compute_on(backend, &mut simulation)?,
     }
@@ -91,12 +103,18 @@ fn compute_on(backend: Backend, simulation: &mut Simulation) -> Result<(), corpu
     }
 }
 
-fn start(options: &RunOptions, stop: &Arc<AtomicBool>) -> anyhow::Result<(Simulation, Recorder)> {
-    let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
-    fetch_for(&named.scene, stop)?;
-    let mut simulation = while_shown("setting up the scene", || Simulation::open(named.scene, &named.folder))??;
+fn start(
+    processes: &Processes,
+    options: &RunOptions,
+    stop: &Arc<AtomicBool>,
+) -> anyhow::Result<(Simulation, Recorder)> {
+    let named = read(processes, options, stop)?;
+    let open = || Simulation::open_on(processes, named.scene, &named.folder);
+    let mut simulation = while_shown("setting up the scene", open)??;
     // Before the folder is made: a refused scene leaves none behind.
-    compute_on(options.backend, &mut simulation)?;
+    if processes.count() == 1 || options.backend == Backend::Gpu {
+        compute_on(options.backend, &mut simulation)?;
+    }
     let folder = match &options.output {
         Some(folder) => folder.clone(),
         None => next_run_folder(Path::new("runs"), &named.short_name).map_err(corpuscle::Error::from)?,

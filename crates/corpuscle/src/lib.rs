@@ -45,6 +45,7 @@ pub use corpuscle_gas::LiveChange as GasLiveChange;
 pub use corpuscle_gpu as gpu;
 pub use corpuscle_model as model;
 pub use corpuscle_output as output;
+pub use corpuscle_processes as processes;
 pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
 #[cfg(feature = "film")]

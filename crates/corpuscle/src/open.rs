@@ -2,9 +2,13 @@
 
 use crate::models::{self, Opened, Opening};
 use crate::{Error, Simulation};
+use corpuscle_flood::as_flood_mut;
+use corpuscle_model::ModelError;
 #[cfg(feature = "gpu")]
-use corpuscle_model::{CpuOnly, Model, ModelError};
+use corpuscle_model::{CpuOnly, Model};
+use corpuscle_processes::Processes;
 use corpuscle_scene::Scene;
+use std::any::Any;
 use std::path::Path;
 
 /// The error of a model that runs on the CPU only, where a GPU was requested.
@@ -20,7 +24,32 @@ impl Simulation {
     /// # Errors
     /// Where the scene, its terrain or a file that it names cannot be used.
     pub fn open(scene: Scene, folder: &Path) -> Result<Self, Error> {
-        Self::open_with(scene, folder, false)
+        Self::open_with(scene, folder, &Processes::alone(), false)
+    }
+
+    /// As [`Simulation::open`], with the scene shared out over processes, which all call this. The first then runs it; the others
+    /// [follow](Simulation::follow).
+    ///
+    /// # Errors
+    /// As [`Simulation::open`]; and where the model, or what the scene has, is computed by one process only.
+    pub fn open_on(processes: &Processes, scene: Scene, folder: &Path) -> Result<Self, Error> {
+        Self::open_with(scene, folder, processes, false)
+    }
+
+    /// As [`Simulation::open_to_restore`], with the scene shared out over processes.
+    ///
+    /// # Errors
+    /// As [`Simulation::open_on`].
+    pub fn open_to_restore_on(processes: &Processes, scene: Scene, folder: &Path) -> Result<Self, Error> {
+        Self::open_with(scene, folder, processes, true)
+    }
+
+    /// Takes part in the run of the first of several processes until it ends; for a process that is not the first.
+    pub fn follow(&mut self) {
+        let model: &mut dyn Any = self.model_mut();
+        if let Some(flood) = as_flood_mut(model) {
+            flood.follow();
+        }
     }
 
     /// As [`Simulation::open`], for a state that is restored, or frames that are read back: a flood does not arrange its water at
@@ -29,7 +58,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::open`].
     pub fn open_to_restore(scene: Scene, folder: &Path) -> Result<Self, Error> {
-        Self::open_with(scene, folder, true)
+        Self::open_with(scene, folder, &Processes::alone(), true)
     }
 
     /// Lets the GPU take the steps from here on, in single precision.
@@ -56,12 +85,17 @@ impl Simulation {
         }
     }
 
-    fn open_with(mut scene: Scene, folder: &Path, is_restored: bool) -> Result<Self, Error> {
+    fn open_with(mut scene: Scene, folder: &Path, processes: &Processes, is_restored: bool) -> Result<Self, Error> {
         scene.check()?;
         scene.resolve_paths(folder);
         scene.resolve_defaults();
-        let opening = Opening { scene: &mut scene, folder, is_restored };
-        let Opened { model, terrain, notes } = models::of(opening.scene)?.open(opening)?;
+        let opening = Opening { scene: &mut scene, folder, processes, is_restored };
+        let kind = models::of(opening.scene)?;
+        if processes.link().is_some() && opening.scene.flood().is_none() {
+            let what = "several processes compute floods by scheme voronoi only: start the run without `mpirun`";
+            return Err(ModelError::Setup(what.into()).into());
+        }
+        let Opened { model, terrain, notes } = kind.open(opening)?;
         Ok(Self::new(scene, terrain, model).with_notes(notes))
     }
 }

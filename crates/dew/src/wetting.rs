@@ -8,7 +8,7 @@ use crate::dew::Dew;
 use crate::drops::{DropLaws, DropState, Drops, Patch, Portion, Share, Surfaces, Unseen};
 use crate::fogging::{Cover, Fogging, Story, SurfaceFace, open_area};
 use crate::solids::SolidParticle;
-use corpuscle_model::{Column, ExactSum, ParticleSet, Surface, Values};
+use corpuscle_model::{Column, CompensatedSum, ParticleSet, Surface, Values};
 use corpuscle_solids::Solid;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -173,7 +173,7 @@ impl Wetting {
     /// Water on the solids, kg: the drops, and what is not transferred to them yet.
     pub fn water(&self, water_on: &[f64]) -> f64 {
         let new = self.particles.iter().zip(&self.shares).map(|(&at, share)| water_on[at as usize] - share.water);
-        new.chain([self.drops.water()]).collect::<ExactSum>().value()
+        new.chain([self.drops.water()]).collect::<CompensatedSum>().value()
     }
 
     pub fn state(&self) -> WettingState {

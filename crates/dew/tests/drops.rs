@@ -1,7 +1,7 @@
 //! Drops: nothing of them is lost, what touches is one, and friction holds them up to its bound.
 
 use corpuscle_dew::drops::{Drop, DropLaws, Drops, Patch, Retention, Surfaces, WATER_DENSITY};
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 use corpuscle_solids::{Pose, Shape, Solid};
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -153,7 +153,7 @@ fn a_drop_runs_down_a_ball_and_leaves_where_it_overhangs() {
 #[test]
 fn what_condenses_is_on_the_pane_or_has_dripped() {
     let mut drops = on_pane(laws(), patches(40, 0.02));
-    let (mut condensed, count) = (ExactSum::default(), 1600);
+    let (mut condensed, count) = (CompensatedSum::default(), 1600);
     // Thickness of 10 micrometres on each patch of half a millimetre.
     let mass = WATER_DENSITY * 1e-5 * 0.25e-6;
     for _ in 0..200 {
@@ -166,7 +166,7 @@ fn what_condenses_is_on_the_pane_or_has_dripped() {
     let condensed = condensed.value();
     let error = (drops.water() + drops.dripped()) / condensed - 1.0;
     assert!(error.abs() < 1e-13, "{error}");
-    let mut evaporated = ExactSum::default();
+    let mut evaporated = CompensatedSum::default();
     for _ in 0..200 {
         let (portions, shares) = (drops.portions(), drops.shares());
         let gained: Vec<f64> = shares.iter().map(|share| -share.water.min(2e-8)).collect();

@@ -3,6 +3,7 @@
 use crate::sampling::Sample;
 use crate::{LiveChange, SphSweFlood, VoronoiFlood, limits};
 use corpuscle_model::{Model, ModelError};
+use corpuscle_processes::Processes;
 use corpuscle_scene::{Flood as Settings, Scheme};
 use corpuscle_terrain::Terrain;
 use std::any::Any;
@@ -33,6 +34,10 @@ pub trait FloodModel: Model {
     /// [`ModelError::Setup`] where it has nothing of the kind, or the number is out of range: nothing has changed then.
     /// [`ModelError::Device`] where a GPU takes the steps and cannot go on with the change.
     fn change(&mut self, change: LiveChange) -> Result<(), ModelError>;
+
+    /// Takes part in what the model of the first of several processes is called for, until that is dropped; for a process that is not the first. Does
+    /// nothing where one process computes the flood.
+    fn follow(&mut self) {}
 }
 
 /// Sets a flood up as the `[flood]` of a scene says, its defaults resolved, with the scene's seed. `folder` is what relative paths refer to.
@@ -40,6 +45,7 @@ pub trait FloodModel: Model {
 /// # Errors
 /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
 pub fn open(
+    processes: &Processes,
     settings: &Settings,
     seed: u64,
     folder: &Path,
@@ -49,9 +55,12 @@ pub fn open(
         Scheme::Voronoi => {
             limits::check_cells(settings, &terrain)?;
             limits::check_depths(settings, &terrain, folder)?;
-            Box::new(VoronoiFlood::new(settings, seed, folder, terrain)?)
+            Box::new(VoronoiFlood::new_on(processes, settings, seed, folder, terrain)?)
         }
-        Scheme::SphSwe => Box::new(SphSweFlood::new(settings, seed, folder, terrain)?),
+        Scheme::SphSwe => {
+            refuse_several(processes)?;
+            Box::new(SphSweFlood::new(settings, seed, folder, terrain)?)
+        }
     })
 }
 
@@ -60,6 +69,7 @@ pub fn open(
 /// # Errors
 /// As [`open`].
 pub fn open_to_restore(
+    processes: &Processes,
     settings: &Settings,
     seed: u64,
     folder: &Path,
@@ -68,10 +78,22 @@ pub fn open_to_restore(
     Ok(match settings.scheme {
         Scheme::Voronoi => {
             limits::check_cells(settings, &terrain)?;
-            Box::new(VoronoiFlood::to_restore(settings, seed, folder, terrain)?)
+            Box::new(VoronoiFlood::to_restore_on(processes, settings, seed, folder, terrain)?)
         }
-        Scheme::SphSwe => Box::new(SphSweFlood::to_restore(settings, seed, folder, terrain)?),
+        Scheme::SphSwe => {
+            refuse_several(processes)?;
+            Box::new(SphSweFlood::to_restore(settings, seed, folder, terrain)?)
+        }
     })
+}
+
+/// Refuses several processes for scheme sph-swe.
+fn refuse_several(processes: &Processes) -> Result<(), ModelError> {
+    if processes.link().is_none() {
+        return Ok(());
+    }
+    let what = "flood.scheme = \"sph-swe\" is computed by one process only: start the run without `mpirun`";
+    Err(ModelError::Setup(what.into()))
 }
 
 /// A model that is a flood, as one.
@@ -129,5 +151,9 @@ impl FloodModel for VoronoiFlood {
 
     fn change(&mut self, change: LiveChange) -> Result<(), ModelError> {
         Self::change(self, change)
+    }
+
+    fn follow(&mut self) {
+        Self::follow(self);
     }
 }

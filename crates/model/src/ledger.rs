@@ -1,5 +1,6 @@
 //! What should be conserved.
 
+use crate::ExactSum;
 use crate::name::{self, Name};
 use serde::{Deserialize, Serialize};
 
@@ -61,44 +62,9 @@ impl Account {
     }
 }
 
-/// A sum whose rounding errors do not add up (Neumaier 1974).
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct ExactSum {
-    sum: f64,
-    lost: f64,
-}
-
-impl ExactSum {
-    /// Adds a value.
-    pub fn add(&mut self, value: f64) {
-        let sum = self.sum + value;
-        self.lost += if self.sum.abs() >= value.abs() { (self.sum - sum) + value } else { (value - sum) + self.sum };
-        self.sum = sum;
-    }
-
-    /// The sum so far.
-    pub fn value(&self) -> f64 {
-        self.sum + self.lost
-    }
-}
-
-impl FromIterator<f64> for ExactSum {
-    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
-        let mut sum = Self::default();
-        values.into_iter().for_each(|value| sum.add(value));
-        sum
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Account, Balance, ExactSum};
-
-    #[test]
-    fn small_amounts_are_not_lost_beside_large_ones() {
-        let sum: ExactSum = std::iter::once(1e16).chain(std::iter::repeat_n(1.0, 1000)).chain([-1e16]).collect();
-        assert_eq!(sum.value(), 1000.0);
-    }
+    use super::{Account, Balance};
 
     #[test]
     fn relative_error_counts_what_came_in_and_went_out() {

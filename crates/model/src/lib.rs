@@ -13,6 +13,7 @@ mod map;
 mod name;
 mod observer;
 mod path;
+mod sums;
 mod surface;
 
 pub use chart::{Chart, ChartAxis, ChartSeries, ChartStyle};
@@ -21,11 +22,12 @@ pub use frame::{Column, Frame, ParticleSet, Values};
 pub use gauge::GaugeColumn;
 #[cfg(feature = "gpu")]
 pub use gpu_model::{Advance, Glance, GpuModel};
-pub use ledger::{Account, Balance, ExactSum, Ledger};
+pub use ledger::{Account, Balance, Ledger};
 pub use map::Map;
 pub use name::Name;
 pub use observer::{AdvanceObserver, ModelProgress, advance_with};
 pub use path::Path;
+pub use sums::{CompensatedSum, ExactSum};
 pub use surface::{Distance, SolidShape, Surface};
 
 use std::any::Any;

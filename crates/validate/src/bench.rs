@@ -4,6 +4,7 @@ use corpuscle_dew::Dew;
 use corpuscle_flood::{SphSweFlood, VoronoiFlood};
 use corpuscle_gpu::{Gpu, PassTiming};
 use corpuscle_model::{GpuModel, Model, ModelError};
+use corpuscle_processes::Processes;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 use std::sync::{PoisonError, RwLock};
@@ -21,8 +22,11 @@ pub struct Rate {
     /// Packing fraction (gas).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing: Option<f64>,
-    /// Threads used; 0 on a GPU.
+    /// Threads used, of each process; 0 on a GPU.
     pub threads: usize,
+    /// Processes that share the model, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub processes: Option<usize>,
     /// The GPU, where it computes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub device: Option<String>,
@@ -30,7 +34,7 @@ pub struct Rate {
     pub rate: f64,
     /// Unit of the rate: `particle_steps_per_s`.
     pub rate_unit: String,
-    /// Memory of the model over its particles.
+    /// Memory of the model over its particles; of several processes that of the first, times their number.
     pub bytes_per_particle: f64,
     /// Times of the passes of a step on the GPU, where requested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -57,6 +61,8 @@ pub struct Bench {
     pub about: &'static str,
     /// True for a GPU only.
     pub needs_gpu: bool,
+    /// Whether several processes share its model.
+    pub is_shared: bool,
     /// Runs it.
     pub run: fn(&BenchOptions) -> Vec<Rate>,
 }
@@ -70,6 +76,8 @@ pub struct BenchOptions {
     pub gpu: Option<Gpu>,
     /// Whether each pass of a step is timed on the GPU.
     pub passes: bool,
+    /// The processes that share floods by scheme voronoi.
+    pub processes: Processes,
 }
 
 static ADDED: RwLock<Vec<Bench>> = RwLock::new(Vec::new());
@@ -158,9 +166,13 @@ impl Measuring {
             dimensions: self.dimensions,
             packing: None,
             threads: if device.is_some() { 0 } else { rayon::current_num_threads() },
+            processes: options.processes.link().map(|link| link.count()),
             rate: (model.particle_steps() - before) as f64 / spent(&model),
             rate_unit: "particle_steps_per_s".into(),
-            bytes_per_particle: model.on_gpu().and_then(GpuModel::gpu_bytes).unwrap_or(model.bytes() as u64) as f64
+            bytes_per_particle: model
+                .on_gpu()
+                .and_then(GpuModel::gpu_bytes)
+                .unwrap_or((model.bytes() * options.processes.count()) as u64) as f64
                 / particles as f64,
             device,
             passes: Vec::new(),

@@ -8,6 +8,7 @@ pub(crate) const BENCHES: &[Bench] = &[Bench {
     name: "gpu/copy",
     about: "The GPU copies a buffer to another: bytes read and bytes written, both counted.",
     needs_gpu: true,
+    is_shared: false,
     run: |options| options.gpu.iter().flat_map(|gpu| rate(gpu, options)).collect(),
 }];
 
@@ -86,6 +87,7 @@ fn measure(gpu: &Gpu, seconds: f64) -> Result<Rate, GpuError> {
         device: Some(gpu.name.clone()),
         rate: f64::from(times) * 2.0 * from.size() as f64 / began.elapsed().as_secs_f64(),
         rate_unit: "bytes_per_s".into(),
+        processes: None,
         bytes_per_particle: 0.0,
         passes: Vec::new(),
     })

@@ -53,6 +53,7 @@ fn draw_for(name: &str, gpu: &Gpu, seconds: f64, timed: u32, splats: bool) -> an
         device: Some(gpu.name.clone()),
         rate: pace.rate,
         rate_unit: "pictures_per_s".into(),
+        processes: None,
         bytes_per_particle: flood.on_gpu().and_then(GpuModel::gpu_bytes).unwrap_or(0) as f64 / particles as f64,
         passes: Vec::new(),
     };

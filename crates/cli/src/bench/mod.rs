@@ -4,6 +4,7 @@ mod drawn;
 
 use crate::args::{Backend, BenchOptions};
 use crate::output::{number, print, print_json};
+use crate::processes::processes;
 use crate::select::select;
 use corpuscle::gpu::Gpu;
 use corpuscle_validate::{PassTime, Rate, benches};
@@ -11,10 +12,19 @@ use std::process::ExitCode;
 
 /// Measures rates and prints each when it is known.
 pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> {
+    let processes = processes()?;
     let gpu = if options.backend == Backend::Gpu { Some(Gpu::open().map_err(corpuscle::Error::from)?) } else { None };
-    let with = corpuscle_validate::BenchOptions { quick: options.quick, passes: options.passes && gpu.is_some(), gpu };
+    let with = corpuscle_validate::BenchOptions {
+        quick: options.quick,
+        passes: options.passes && gpu.is_some(),
+        gpu,
+        processes,
+    };
     let mut rates = Vec::new();
     for bench in select(&benches(), |bench| bench.name, &options.names)? {
+        if !bench.is_shared && !with.processes.is_first() {
+            continue;
+        }
         if with.gpu.is_some() && bench.name.starts_with("gas/") {
             tell!("{} left out: it computes on the CPU only", bench.name);
             continue;
@@ -37,7 +47,7 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
             rates.push(rate);
         }
     }
-    if as_json {
+    if as_json && with.processes.is_first() {
         print_json(&rates)?;
     }
     Ok(ExitCode::SUCCESS)
@@ -46,7 +56,8 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
 /// A rate as text, with the times of its passes.
 fn line(rate: &Rate) -> String {
     let Rate { name, particles, dimensions, threads, rate_unit, .. } = rate;
-    let on = rate.device.clone().unwrap_or_else(|| format!("{threads} threads"));
+    let of_each = rate.processes.map(|count| format!("{count} processes with ")).unwrap_or_default();
+    let on = rate.device.clone().unwrap_or_else(|| format!("{of_each}{threads} threads"));
     let packing = rate.packing.map(|packing| format!(", packing {packing}")).unwrap_or_default();
     let of_what = match particles {
         0 => on,

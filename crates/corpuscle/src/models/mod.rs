@@ -14,6 +14,7 @@ use crate::pictures::{DrawContext, Particles, PictureSettings, Scenery, Sketcher
 use corpuscle_model::SolidShape;
 use corpuscle_model::{Model, ModelError};
 use corpuscle_output::{PlainReport, Summary};
+use corpuscle_processes::Processes;
 use corpuscle_scene::{Scene, SceneKind};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -31,6 +32,8 @@ pub struct Opening<'a> {
     pub scene: &'a mut Scene,
     /// Folder that relative paths of terrain and series start from.
     pub folder: &'a Path,
+    /// The processes that share the run, where there are several.
+    pub processes: &'a Processes,
     /// True where a saved state is restored next, so that particles need no initial positions.
     pub is_restored: bool,
 }

@@ -11,7 +11,7 @@
 use super::Dew;
 use crate::fan::Fan;
 use crate::room::Face;
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 
 /// The layer of air before a solid may hold this part of the heat that the solid, accelerated, holds: by so much the air lags behind it.
 const MOST_LAG: f64 = 0.1;
@@ -19,8 +19,8 @@ const MOST_LAG: f64 = 0.1;
 /// What the solids took from the air in a step, before the factor.
 #[derive(Debug, Default)]
 pub(super) struct Taken {
-    heat: ExactSum,
-    water: ExactSum,
+    heat: CompensatedSum,
+    water: CompensatedSum,
 }
 
 impl Taken {

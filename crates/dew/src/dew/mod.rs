@@ -30,7 +30,7 @@ use crate::solids::sources::HeatSources;
 use crate::solids::{Body, Conduction, Solids, Surface};
 use crate::walls;
 use crate::wetting::Wetting;
-use corpuscle_model::{Account, ExactSum, ModelError};
+use corpuscle_model::{Account, CompensatedSum, ModelError};
 use corpuscle_scene::Table;
 use corpuscle_scene::dew::Output;
 use live_change::Overrides;
@@ -106,11 +106,11 @@ pub(crate) struct State {
     /// Water on each particle of the solids, kg.
     pub water_on: Vec<f64>,
     /// Vapour that has become fog less fog that has become vapour, kg.
-    pub fogged: ExactSum,
+    pub fogged: CompensatedSum,
     /// Heat that has come from each solid held at a temperature, J; negative where it took it.
-    pub held_heat: Vec<ExactSum>,
+    pub held_heat: Vec<CompensatedSum>,
     /// Heat that each solid, then each wall, has got from its heater, from outside and by radiation, J.
-    pub supplied: Vec<[ExactSum; 3]>,
+    pub supplied: Vec<[CompensatedSum; 3]>,
     /// Heat that each solid takes from the air through its surface, W, in the last step.
     pub heat_flow: Vec<f64>,
     /// Time of the last search for air of low utility, s.
@@ -183,8 +183,8 @@ impl Dew {
             air: Vec::new(),
             temperatures,
             water_on: vec![0.0; solids.particles.len()],
-            fogged: ExactSum::default(),
-            held_heat: vec![ExactSum::default(); bodies.len()],
+            fogged: CompensatedSum::default(),
+            held_heat: vec![CompensatedSum::default(); bodies.len()],
             supplied: vec![Default::default(); bodies.len()],
             heat_flow: vec![0.0; bodies.len()],
             utility_seen: 0.0,
@@ -245,7 +245,7 @@ impl Dew {
     pub(crate) fn renew_heat_network(&mut self) {
         let groups = self.solids.groups();
         self.conductances = (0..self.solids.nodes()).map(|i| self.conduction.sum(i)).collect();
-        self.state.held_heat.resize(groups, ExactSum::default());
+        self.state.held_heat.resize(groups, CompensatedSum::default());
         self.state.supplied.resize(groups, Default::default());
         self.state.heat_flow.resize(groups, 0.0);
         self.state.energy.initial = self.energy();
@@ -344,13 +344,13 @@ impl Dew {
     pub(crate) fn water(&self) -> f64 {
         let in_air = self.inside().map(|particle| self.particle_mass() * (particle.vapour + particle.fog));
         let on_solids = self.water_on_all();
-        in_air.chain([on_solids, self.residual()[0]]).collect::<ExactSum>().value()
+        in_air.chain([on_solids, self.residual()[0]]).collect::<CompensatedSum>().value()
     }
 
     /// Water on the solids, kg.
     pub(crate) fn water_on_all(&self) -> f64 {
         let water = &self.state.water_on;
-        let sum = || water.iter().copied().collect::<ExactSum>().value();
+        let sum = || water.iter().copied().collect::<CompensatedSum>().value();
         self.wetting.as_ref().map_or_else(sum, |wetting| wetting.water(water))
     }
 
@@ -368,7 +368,7 @@ impl Dew {
             .map(|particle| self.energy_of(particle))
             .chain(solids)
             .chain([self.residual()[1]])
-            .collect::<ExactSum>()
+            .collect::<CompensatedSum>()
             .value()
     }
 

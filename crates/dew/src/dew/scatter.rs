@@ -3,7 +3,7 @@
 use super::Dew;
 use crate::air::Role;
 use crate::faces::Free;
-use corpuscle_model::{Account, ExactSum};
+use corpuscle_model::{Account, CompensatedSum};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -52,6 +52,6 @@ impl Dew {
         // Inflow and outflow before are no part of the run.
         self.state.water = Account { initial: self.water(), ..Account::default() };
         self.state.energy = Account { initial: self.energy(), ..Account::default() };
-        self.state.held_heat.fill(ExactSum::default());
+        self.state.held_heat.fill(CompensatedSum::default());
     }
 }

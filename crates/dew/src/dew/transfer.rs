@@ -6,7 +6,7 @@ use crate::air::{Particle, Role};
 use crate::exchange::{Exchange, ToAir, Work, excess};
 use crate::room::Face;
 use crate::settings::Condensation;
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 use rayon::prelude::*;
 
 impl Dew {
@@ -104,9 +104,9 @@ impl Dew {
             mass * step * (self.air.heat_capacity * warming + self.latent_heat * moistening)
         };
         let inside = || air.iter().zip(&self.rates).filter(|(particle, _)| particle.role == Role::Inside);
-        let gained: ExactSum = inside().map(|(_, rates)| mass * step * rates.moistening).collect();
+        let gained: CompensatedSum = inside().map(|(_, rates)| mass * step * rates.moistening).collect();
         water.book(gained.value());
-        let gained: ExactSum = inside().map(|(_, rates)| energy_of(rates.warming, rates.moistening)).collect();
+        let gained: CompensatedSum = inside().map(|(_, rates)| energy_of(rates.warming, rates.moistening)).collect();
         energy.book(gained.value());
         for (near, given) in self.contact.near.iter().zip(to_air) {
             let [warming, moistening] = given.from_beyond;

@@ -22,7 +22,7 @@ pub use unseen::Unseen;
 
 use cap::{angle, height, reach};
 use contact_line::ContactLine;
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 use corpuscle_solids::Solid;
 use grid::Grid;
 use serde::{Deserialize, Serialize};
@@ -105,7 +105,7 @@ pub struct DropState {
     /// Mass of the drop at each site that is not resolved yet, kg.
     pub unseen: Vec<f64>,
     /// Mass that left the solids as drops, kg.
-    pub dripped: ExactSum,
+    pub dripped: CompensatedSum,
     /// Number of drops that left.
     pub dripped_count: u64,
     /// Number of drops that became part of others.
@@ -262,7 +262,7 @@ impl Drops {
     /// Water on the solids now, in drops that are resolved or not, kg.
     pub fn water(&self) -> f64 {
         let drops = self.state.drops.iter().map(|drop| drop.mass);
-        drops.chain(self.state.unseen.iter().copied()).collect::<ExactSum>().value()
+        drops.chain(self.state.unseen.iter().copied()).collect::<CompensatedSum>().value()
     }
 
     /// Water that left the solids as drops, kg.

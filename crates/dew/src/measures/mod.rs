@@ -5,7 +5,7 @@ use crate::dew::Dew;
 use crate::drops::Drops;
 use crate::fogging::Cover;
 use crate::humid_air::is_frost;
-use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, ExactSum, GaugeColumn};
+use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, CompensatedSum, GaugeColumn};
 use std::f64::consts::SQRT_2;
 
 /// Totals of the air for gauges.
@@ -120,7 +120,7 @@ impl Dew {
             air.temperature / air.count,
             air.fastest,
             stories.map_or_else(wet, |stories| stories.iter().map(|story| story.covered).sum()),
-            self.state.held_heat.iter().map(ExactSum::value).sum(),
+            self.state.held_heat.iter().map(CompensatedSum::value).sum(),
         ];
         row.extend(self.measured_drops());
         (0..self.names.len()).for_each(|body| row.extend(self.measured_of(body)));

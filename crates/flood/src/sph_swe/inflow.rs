@@ -3,7 +3,7 @@
 use super::Sampler;
 use super::particle::Particle;
 use crate::zone::{Source, Zone};
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 use corpuscle_sph::kernel::CubicSpline;
 use corpuscle_terrain::Bounds;
 use rand::SeedableRng;
@@ -25,7 +25,7 @@ pub(crate) struct ParticleSpawner<'a> {
 
 impl ParticleSpawner<'_> {
     /// Adds the inflow of `source` from `time` to `time + step` in whole particles; `residual_volume` is the remainder, m3.
-    pub fn inject(&mut self, source: &Source, residual_volume: &mut ExactSum, time: f64, step: f64) {
+    pub fn inject(&mut self, source: &Source, residual_volume: &mut CompensatedSum, time: f64, step: f64) {
         residual_volume.add(source.discharge.integral(time, time + step));
         while residual_volume.value() >= self.volume {
             residual_volume.add(-self.volume);

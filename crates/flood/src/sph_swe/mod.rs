@@ -38,7 +38,7 @@ use crate::gauges::{LineGauge, PointGauge};
 use crate::sampling::Sample;
 use crate::zone::Source;
 use change::Overrides;
-use corpuscle_model::{Account, ExactSum};
+use corpuscle_model::{Account, CompensatedSum};
 use corpuscle_scene::{Flood as Settings, Table};
 use falling::Falling;
 use serde::{Deserialize, Serialize};
@@ -89,7 +89,7 @@ struct State {
     particles: Vec<Particle>,
     falling: Vec<Falling>,
     /// Inflow of each source that is not yet a whole particle, m3.
-    residual_volume: Vec<ExactSum>,
+    residual_volume: Vec<CompensatedSum>,
     next_id: u64,
     water: Account,
     momentum: Account,
@@ -174,7 +174,7 @@ impl SphSweFlood {
     /// Water in the model, m3.
     fn stored(&self) -> f64 {
         let airborne = self.state.falling.iter().map(|drop| drop.particle.volume);
-        self.inside().map(|particle| particle.volume).chain(airborne).collect::<ExactSum>().value()
+        self.inside().map(|particle| particle.volume).chain(airborne).collect::<CompensatedSum>().value()
     }
 
     /// Momentum of the water, sum of its two components, kg m/s.

@@ -13,7 +13,7 @@ use super::{SphSweFlood, State};
 use crate::friction::Roughness;
 use crate::setup::{self, InitialWater};
 use crate::{fields, limits, obstacles, spacing};
-use corpuscle_model::{Account, ExactSum, ModelError};
+use corpuscle_model::{Account, CompensatedSum, ModelError};
 use corpuscle_scene::{Block, Edge, Flood as Settings, Scheme, SmoothingForm};
 use corpuscle_sph::kernel::Kernel;
 use corpuscle_terrain::Terrain;
@@ -108,7 +108,7 @@ impl SphSweFlood {
             particle_steps: 0,
             particles: Vec::new(),
             falling: Vec::new(),
-            residual_volume: vec![ExactSum::default(); sources.len()],
+            residual_volume: vec![CompensatedSum::default(); sources.len()],
             next_id: 0,
             water: Account::default(),
             momentum: Account::default(),

@@ -10,6 +10,7 @@
 //! | `boundaries` | the sides of the terrain |
 //! | `friction` | Manning, Chezy, linear |
 //! | `start`, `rain`, `structures` | sources and sinks of water |
+//! | `domain` | the part of one of several processes |
 //! | `maps` | what happened in each cell, on the terrain's grid |
 //! | `adaptive` | cells that follow the water |
 //! | `gpu` | the same steps on a GPU; each pass's WGSL stands in the folder of the pass |
@@ -21,6 +22,7 @@ mod adaptive;
 mod bed;
 mod boundaries;
 mod change;
+mod domain;
 mod finer;
 mod fluxes;
 mod friction;
@@ -41,6 +43,7 @@ mod start;
 mod step;
 mod storage;
 mod structures;
+mod sums;
 #[cfg(test)]
 mod tests;
 mod to_come;
@@ -64,6 +67,7 @@ use change::Overrides;
 use corpuscle_model::{Account, ExactSum};
 use corpuscle_scene::{Flood as Settings, Table};
 use corpuscle_terrain::Terrain;
+use domain::Domain;
 use maps::Record;
 use patch::Patch;
 use rain::{Soaked, Weather};
@@ -101,6 +105,8 @@ pub struct VoronoiFlood {
     patches: Patches,
     points: Vec<PointGauge>,
     lines: Vec<LineGauge>,
+    /// What each obstacle took up in the step, over density, m4/s.
+    pushes: Vec<[ExactSum; 2]>,
     state: State,
     /// The time shown, s: not after the state's, and not before that of the step before.
     shown: f64,
@@ -133,6 +139,8 @@ struct State {
     time_step: f64,
     /// The tiles that were made, in order.
     tiles: Vec<u32>,
+    /// Number of cells and of border faces of each; found when it is saved.
+    counts: Vec<domain::Counts>,
     /// Water of the cells now, and before the last step. Kept in the solver while the model runs.
     columns: [Vec<Column>; 2],
     records: Vec<Record>,
@@ -182,10 +190,11 @@ impl VoronoiFlood {
         self.solver.mesh.len()
     }
 
-    /// For each wet cell at the end of the last step: centroid, m, area, m2, mean ground, m, depth, m, velocity, m/s.
+    /// For each wet cell of this process at the end of the last step: centroid, m, area, m2, mean ground, m, depth, m, velocity, m/s.
     pub fn wet_cells(&self) -> impl Iterator<Item = WetCell> + '_ {
         let mesh = &self.solver.mesh;
-        let wet = self.solver.water.iter().enumerate().filter(|(_, water)| water.depth > 0.0);
+        let wet =
+            self.solver.water.iter().enumerate().filter(|(cell, water)| water.depth > 0.0 && self.solver.owns(*cell));
         wet.map(|(cell, water)| WetCell {
             centroid: mesh.centroid[cell],
             area: mesh.area[cell],
@@ -200,11 +209,13 @@ impl VoronoiFlood {
     pub fn energy(&self, level: f64) -> [f64; 2] {
         let mesh = &self.solver.mesh;
         let gravity = self.solver.gravity;
-        let columns = self.solver.columns.iter().enumerate();
-        let kinetic = columns.clone().map(|(_, column)| column.kinetic()).collect::<ExactSum>();
+        let columns = self.own_columns();
+        let mut kinetic = columns.clone().map(|(_, column)| column.kinetic()).collect::<ExactSum>();
         let potential =
             columns.map(|(cell, column)| gravity * (mesh.potential(cell, column.volume) - level * column.volume));
-        [kinetic, potential.collect::<ExactSum>()].map(|sum| DENSITY * sum.value())
+        let mut potential = potential.collect::<ExactSum>();
+        domain::total(self.solver.domain.as_ref(), &mut [], &mut [&mut kinetic, &mut potential]);
+        [kinetic, potential].map(|sum| DENSITY * sum.value())
     }
 
     /// Energy that the water has and a lake at rest at a level, m, would not have, J: kinetic, and what it takes to raise and lower the surface from
@@ -215,7 +226,7 @@ impl VoronoiFlood {
             let depth = column.volume / mesh.area[cell];
             column.kinetic() + self.solver.gravity * mesh.area[cell] * mesh.raised(cell, depth, level)
         };
-        DENSITY * self.solver.columns.iter().enumerate().map(of_cell).collect::<ExactSum>().value()
+        DENSITY * domain::total_of(self.solver.domain.as_ref(), self.own_columns().map(of_cell).collect())
     }
 
     /// The water of a cell at the time shown.
@@ -234,23 +245,35 @@ impl VoronoiFlood {
         Sampler { mesh: &self.solver.mesh, terrain: &self.terrain, water: |cell| self.water_shown(cell) }
     }
 
+    /// The columns of the cells that this process computes.
+    fn own_columns(&self) -> impl Iterator<Item = (usize, &Column)> + Clone {
+        self.solver.columns.iter().enumerate().filter(|(cell, _)| self.solver.owns(*cell))
+    }
+
+    /// Water in the air, which the first process counts.
+    fn falling(&self) -> impl Iterator<Item = &step::Drop> {
+        let counts = self.solver.domain.as_ref().is_none_or(Domain::is_first);
+        self.state.falling.iter().filter(move |_| counts)
+    }
+
     /// Water in the model, m3.
     fn stored(&self) -> f64 {
-        let columns = self.solver.columns.iter().map(|column| column.volume);
-        columns.chain(self.state.falling.iter().map(|drop| drop.volume)).collect::<ExactSum>().value()
+        let columns = self.own_columns().map(|(_, column)| column.volume);
+        let all = columns.chain(self.falling().map(|drop| drop.volume)).collect();
+        domain::total_of(self.solver.domain.as_ref(), all)
     }
 
     /// Momentum of all water if it were as fast as waves on it, kg m/s.
     fn momentum_of_waves(&self) -> f64 {
         let waves = self.wet_cells().map(|cell| cell.area * cell.depth * (self.solver.gravity * cell.depth).sqrt());
-        DENSITY * waves.sum::<f64>()
+        DENSITY * domain::total_of(self.solver.domain.as_ref(), waves.collect())
     }
 
     /// Momentum of the water, sum of its two components, kg m/s.
     fn momentum(&self) -> f64 {
-        let columns = self.solver.columns.iter().map(|column| column.momentum[0] + column.momentum[1]);
-        let falling = self.state.falling.iter().map(|drop| drop.volume * (drop.velocity[0] + drop.velocity[1]));
-        DENSITY * columns.chain(falling).collect::<ExactSum>().value()
+        let columns = self.own_columns().map(|(_, column)| column.momentum[0] + column.momentum[1]);
+        let falling = self.falling().map(|drop| drop.volume * (drop.velocity[0] + drop.velocity[1]));
+        DENSITY * domain::total_of(self.solver.domain.as_ref(), columns.chain(falling).collect())
     }
 }
 

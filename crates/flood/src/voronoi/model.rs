@@ -1,12 +1,14 @@
 //! What a flood shows of itself.
 
 use super::change::Overrides;
+use super::domain::{self, Command, Domain};
 use super::{DENSITY, State, VoronoiFlood, maps};
 #[cfg(feature = "gpu")]
 use corpuscle_model::GpuModel;
 use corpuscle_model::{
     Balance, Column, CpuOnly, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values,
 };
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Water less deep than this part of the depth of wet ground is not shown as a particle.
@@ -15,12 +17,52 @@ pub(super) const SHOWN: f64 = 0.1;
 /// Momentum that is a smaller part of that of all water, if it were as fast as waves, is what rounding leaves of the thrusts in a lake at rest.
 const ROUNDING: f64 = 1e-9;
 
+/// A wet cell as a frame shows it.
+#[derive(Serialize, Deserialize)]
+struct Shown {
+    point: u64,
+    centroid: [f64; 2],
+    area: f64,
+    bed: f64,
+    /// Depth, level, and velocity.
+    water: [f64; 4],
+}
+
+impl VoronoiFlood {
+    /// The wet cells of all processes, at the first, in the order of their points.
+    fn wet_shown(&self) -> Vec<Shown> {
+        let (mesh, domain) = (&self.solver.mesh, self.solver.domain.as_ref());
+        let least = SHOWN * self.settings.wet_depth_m;
+        let own = (0..mesh.len()).filter(|cell| self.solver.owns(*cell));
+        let wet = own.map(|cell| (cell, self.water_shown(cell))).filter(|(_, water)| water.depth > least);
+        let shown = wet.map(|(cell, water)| Shown {
+            point: mesh.point[cell],
+            centroid: mesh.centroid[cell],
+            area: mesh.area[cell],
+            bed: mesh.bed[cell],
+            water: [water.depth, water.level, water.velocity[0], water.velocity[1]],
+        });
+        let mut shown: Vec<Shown> = shown.collect();
+        if let Some(domain) = domain {
+            shown = domain.gather::<Vec<Shown>>(&shown).into_iter().flatten().collect();
+        }
+        shown.sort_unstable_by_key(|cell| cell.point);
+        shown
+    }
+}
+
 impl Model for VoronoiFlood {
     fn name(&self) -> &'static str {
         "flood"
     }
 
     fn cpu_only(&self) -> Option<CpuOnly> {
+        if self.solver.domain.is_some() {
+            return Some(CpuOnly {
+                what: "several processes compute on CPUs only",
+                remedy: "leave `--backend gpu` out",
+            });
+        }
         #[cfg(feature = "gpu")]
         return self.on_cpu_only();
         #[cfg(not(feature = "gpu"))]
@@ -66,10 +108,11 @@ impl Model for VoronoiFlood {
         if self.on_gpu.is_some() {
             return corpuscle_gpu::wait_for(self.advance_on_gpu(time, stop));
         }
+        self.broadcast(Command::Advance(time));
         // On a thread of the pool: from outside, each pass of a small flood would wait for one to wake up.
         rayon::scope(|_| {
             while self.state.time < time {
-                if stop.load(Ordering::Relaxed) {
+                if domain::any(self.solver.domain.as_ref(), stop.load(Ordering::Relaxed)) {
                     self.shown = self.shown.max(self.state.time);
                     return Ok(());
                 }
@@ -81,25 +124,21 @@ impl Model for VoronoiFlood {
     }
 
     fn frame(&self) -> Frame {
+        self.broadcast(Command::Frame);
         let mesh = &self.solver.mesh;
-        let least = SHOWN * self.settings.wet_depth_m;
-        let wet = (0..mesh.len()).map(|cell| (cell, self.water_shown(cell))).filter(|(_, water)| water.depth > least);
-        let mut wet: Vec<_> = wet.collect();
-        wet.sort_unstable_by_key(|(cell, _)| mesh.point[*cell]);
+        let wet = self.wet_shown();
         let count = wet.len() + self.state.falling.len();
         let mut set = ParticleSet { name: "water".into(), ..ParticleSet::default() };
         let [mut depth, mut ground, mut speed] = [(); 3].map(|()| Vec::with_capacity(count));
-        for (cell, water) in wet {
-            let [x, y] = mesh.centroid[cell];
-            let [u, v] = water.velocity;
-            set.id.push(mesh.point[cell]);
-            set.position.push([x, y, water.level]);
+        for Shown { point, centroid: [x, y], area, bed, water: [own_depth, level, u, v] } in wet {
+            set.id.push(point);
+            set.position.push([x, y, level]);
             set.velocity.push([u, v, 0.0]);
-            set.radius.push(0.5 * mesh.area[cell].sqrt());
-            set.mass.push(DENSITY * water.depth * mesh.area[cell]);
-            depth.push(water.depth);
-            ground.push(mesh.bed[cell]);
-            speed.push(water.speed());
+            set.radius.push(0.5 * area.sqrt());
+            set.mass.push(DENSITY * own_depth * area);
+            depth.push(own_depth);
+            ground.push(bed);
+            speed.push((u * u + v * v).sqrt());
         }
         for drop in &self.state.falling {
             let [x, y, _] = drop.position;
@@ -129,19 +168,22 @@ impl Model for VoronoiFlood {
     }
 
     fn maps(&self) -> Vec<Map> {
+        self.broadcast(Command::Maps);
         let water = |cell: usize| self.water_shown(cell);
         let mesh = &self.solver.mesh;
-        let mut maps = maps::maps(mesh, &self.terrain, &self.state.records, &water, self.settings.wet_depth_m);
-        maps.extend(self.weather.as_ref().and_then(|weather| weather.map(mesh, &self.terrain, &self.state.soaked)));
+        let domain = self.solver.domain.as_ref();
+        let mut maps = maps::maps(mesh, &self.terrain, &self.state.records, &water, self.settings.wet_depth_m, domain);
+        let soaked = &self.state.soaked;
+        maps.extend(self.weather.as_ref().and_then(|weather| weather.map(mesh, &self.terrain, soaked, domain)));
         maps
     }
 
     fn ledger(&self) -> Ledger {
-        let water = self.state.water.balance("water_m3", self.stored());
-        let momentum = Balance {
-            least: ROUNDING * self.momentum_of_waves(),
-            ..self.state.momentum.balance("momentum", self.momentum())
-        };
+        self.broadcast(Command::Ledger);
+        let ([water, momentum, _], _) = self.booked();
+        let water = water.balance("water_m3", self.stored());
+        let momentum = momentum.balance("momentum", self.momentum());
+        let momentum = Balance { least: ROUNDING * self.momentum_of_waves(), ..momentum };
         Ledger { balances: vec![water, momentum] }
     }
 
@@ -150,16 +192,14 @@ impl Model for VoronoiFlood {
     }
 
     fn save(&self) -> Vec<u8> {
-        let state = State {
-            tiles: self.solver.mesh.made.clone(),
-            blocks: self.solver.mesh.layout.blocks().finer(),
-            columns: [self.solver.columns.clone(), self.solver.before().to_vec()],
-            ..self.state.clone()
-        };
-        postcard::to_stdvec(&(self.shown, &state)).unwrap_or_default()
+        self.broadcast(Command::Save);
+        postcard::to_stdvec(&(self.shown, &self.gathered_state())).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), ModelError> {
+        if self.solver.domain.as_ref().is_some_and(Domain::is_first) {
+            self.broadcast(Command::Restore(state.to_vec()));
+        }
         let refused = |what: String| ModelError::Checkpoint(what);
         let (shown, mut state): (f64, State) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
@@ -169,9 +209,14 @@ impl Model for VoronoiFlood {
             return Err(other());
         }
         // The tiles that a model without water has made come first, and in any state of this scene too.
-        let made = self.solver.mesh.made.len().min(state.tiles.len());
-        if self.solver.mesh.made[..made] != state.tiles[..made] || self.solver.mesh.made.len() > state.tiles.len() {
+        let made = self.tiles().len().min(state.tiles.len());
+        if self.tiles()[..made] != state.tiles[..made] || self.tiles().len() > state.tiles.len() {
             return Err(other());
+        }
+        if self.solver.domain.is_some() {
+            self.restore_part(state)?;
+            self.shown = shown;
+            return Ok(());
         }
         if !self.restore_blocks(&state.blocks)? {
             return Err(other());

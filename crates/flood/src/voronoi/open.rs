@@ -4,6 +4,7 @@ use super::adaptive::Adaptive;
 use super::bed::Bed;
 use super::boundaries::Boundaries;
 use super::change::Overrides;
+use super::domain::Domain;
 use super::friction::Slowing;
 use super::local::{HIGHEST, Local};
 use super::maps::{DRY, Record};
@@ -15,12 +16,13 @@ use super::start::{self, StartWater};
 use super::step::drops;
 use super::structures::Patches;
 use super::structures::Structures;
-use super::{Inflow, State, VoronoiFlood, finer, walls};
+use super::{Inflow, State, VoronoiFlood, domain, finer, walls};
 use crate::friction::Roughness;
 use crate::setup::{self, setup};
 use crate::zone::Zone;
 use crate::{limits, obstacles, spacing};
-use corpuscle_model::{Account, ModelError};
+use corpuscle_model::{Account, ExactSum, ModelError};
+use corpuscle_processes::Processes;
 use corpuscle_scene::{Flood as Settings, TimeSteps};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
@@ -43,10 +45,25 @@ impl VoronoiFlood {
     /// # Errors
     /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
     pub fn new(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+        Self::new_on(&Processes::alone(), settings, seed, folder, terrain)
+    }
+
+    /// As [`VoronoiFlood::new`], with the cells shared out over processes: all of them call it. The first then has the flood; the others
+    /// [follow](VoronoiFlood::follow) it.
+    ///
+    /// # Errors
+    /// As [`VoronoiFlood::new`]; and where the scene has what a single process computes only.
+    pub fn new_on(
+        processes: &Processes,
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+    ) -> Result<Self, ModelError> {
         start::check_polygons(settings, &terrain)?;
         let ground = Arc::clone(&terrain);
-        let bodies = start::of_scene(settings, &ground, folder)?;
-        Self::with_water(settings, seed, folder, terrain, &bodies)
+        let bodies = processes.agree(start::of_scene(settings, &ground, folder), ModelError::Setup)?;
+        Self::with_water_on(processes, settings, seed, folder, terrain, &bodies)
     }
 
     /// As [`VoronoiFlood::new`], but without the water at the start: for a state that is restored.
@@ -59,7 +76,21 @@ impl VoronoiFlood {
         folder: &Path,
         terrain: Arc<Terrain>,
     ) -> Result<Self, ModelError> {
-        Self::empty(settings, seed, folder, terrain)
+        Self::to_restore_on(&Processes::alone(), settings, seed, folder, terrain)
+    }
+
+    /// As [`VoronoiFlood::to_restore`], with the cells shared out over processes.
+    ///
+    /// # Errors
+    /// As [`VoronoiFlood::new_on`].
+    pub fn to_restore_on(
+        processes: &Processes,
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+    ) -> Result<Self, ModelError> {
+        Self::empty(processes, settings, seed, folder, terrain)
     }
 
     /// As [`VoronoiFlood::new`], with the water at the start given as functions instead of by the scene.
@@ -73,18 +104,38 @@ impl VoronoiFlood {
         terrain: Arc<Terrain>,
         bodies: &[StartWater],
     ) -> Result<Self, ModelError> {
-        let mut model = Self::empty(settings, seed, folder, terrain)?;
-        model.make_first_tiles(bodies)?;
-        model.fill(bodies)?;
-        for _ in 0..model.checks_at_start() {
-            if !model.adapt_to_start()? {
+        Self::with_water_on(&Processes::alone(), settings, seed, folder, terrain, bodies)
+    }
+
+    /// As [`VoronoiFlood::with_water`], with the cells shared out over processes.
+    ///
+    /// # Errors
+    /// As [`VoronoiFlood::new_on`].
+    pub fn with_water_on(
+        processes: &Processes,
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+        bodies: &[StartWater],
+    ) -> Result<Self, ModelError> {
+        Self::empty(processes, settings, seed, folder, terrain)?.started(seed, bodies)
+    }
+
+    /// The model with its water at the start.
+    fn started(mut self, seed: u64, bodies: &[StartWater]) -> Result<Self, ModelError> {
+        self.make_first_tiles(bodies)?;
+        self.fill(bodies)?;
+        for _ in 0..self.checks_at_start() {
+            if !self.adapt_to_start()? {
                 break;
             }
-            model.fill(bodies)?;
+            self.fill(bodies)?;
         }
-        model.warn_of_empty(bodies);
-        model.begin(seed);
-        Ok(model)
+        self.warn_of_empty(bodies);
+        self.begin(seed);
+        self.balance_load(0.0)?;
+        Ok(self)
     }
 
     /// Has it rain as a function says, from the start on.
@@ -100,8 +151,29 @@ impl VoronoiFlood {
         self.make_all_tiles()
     }
 
+    /// All but the water.
+    fn empty(
+        processes: &Processes,
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+    ) -> Result<Self, ModelError> {
+        // A file may be missing for one process only.
+        let opened = Self::without_cells(processes, settings, seed, folder, terrain);
+        let mut model = processes.agree(opened, ModelError::Setup)?;
+        model.open_zones(folder)?;
+        Ok(model)
+    }
+
     /// All but cells and water.
-    fn empty(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+    fn without_cells(
+        processes: &Processes,
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+    ) -> Result<Self, ModelError> {
         let mut settings = settings.clone();
         let spacing = spacing::resolve(&mut settings, &terrain, folder)?;
         let gravity = settings.gravity_m_per_s2;
@@ -121,6 +193,7 @@ impl VoronoiFlood {
             particle_steps: 0,
             time_step: 0.0,
             tiles: Vec::new(),
+            counts: Vec::new(),
             columns: [Vec::new(), Vec::new()],
             records: Vec::new(),
             beyond: Vec::new(),
@@ -154,7 +227,8 @@ impl VoronoiFlood {
         mesh.cut(&bed);
         let mut solver = Solver::new(mesh, gravity, slowing, longest, brings);
         solver.local = (settings.time_steps == TimeSteps::Local).then(Local::default);
-        let mut model = Self {
+        solver.domain = Domain::new(processes, &solver.mesh.layout, solver.local.is_some());
+        Ok(Self {
             points: setup::point_gauges(&settings, &terrain)?,
             lines: setup::line_gauges(&settings, &terrain, spacing)?,
             solver,
@@ -163,6 +237,7 @@ impl VoronoiFlood {
             inflows: Vec::new(),
             patches: Patches::default(),
             obstacle_of: Vec::new(),
+            pushes: vec![[ExactSum::default(); 2]; settings.obstacle.len()],
             roofs,
             written: Vec::new(),
             shown: 0.0,
@@ -177,14 +252,13 @@ impl VoronoiFlood {
             weather,
             structures,
             state,
-        };
-        model.open_zones(folder)?;
-        Ok(model)
+        })
     }
 
     /// Makes the tiles of inflows, structures and held sides, and finds their cells.
     fn open_zones(&mut self, folder: &Path) -> Result<(), ModelError> {
-        let sources = setup::sources(&self.settings, &self.terrain, folder, self.solver.mesh.layout.spacing())?;
+        let sources = setup::sources(&self.settings, &self.terrain, folder, self.solver.mesh.layout.spacing());
+        let sources = domain::agreed(self.solver.domain.as_ref(), sources)?;
         let mesh = &self.solver.mesh;
         let mut tiles = Patches::tiles(&self.structures, mesh);
         tiles.extend(sources.iter().flat_map(|source| Patch::tiles(&source.zone, mesh)));
@@ -204,6 +278,7 @@ impl VoronoiFlood {
         let mesh = &self.solver.mesh;
         for (number, line) in self.settings.edge_line.iter().enumerate() {
             let has_face = mesh.line_faces.iter().any(|(_, of_face)| *of_face as usize == number);
+            let has_face = domain::any(self.solver.domain.as_ref(), has_face);
             if !has_face && self.boundaries.brings()[usize::from(LINE)] {
                 return Err(setup(format!(
                     "flood.edge_line.{number} from {:?} cuts no cell: it is shorter than the cells are wide, or lies where there is no ground",
@@ -211,10 +286,11 @@ impl VoronoiFlood {
                 )));
             }
         }
-        self.zone_tiles = mesh.made.len();
-        self.patches = Patches::of(&self.structures, mesh);
+        let domain = self.solver.domain.as_ref();
+        self.zone_tiles = self.tiles().len();
+        self.patches = Patches::of(&self.structures, mesh, domain);
         for (source, written) in sources.into_iter().zip(&self.settings.inflow) {
-            let patch = Patch::of(&source.zone, mesh);
+            let patch = Patch::of(&source.zone, mesh, domain);
             if patch.is_empty() {
                 let name = &written.name;
                 return Err(setup(format!(
@@ -250,21 +326,33 @@ impl VoronoiFlood {
     pub(super) fn make_tiles(&mut self, mut tiles: Vec<usize>) -> Result<(), ModelError> {
         tiles.sort_unstable();
         tiles.dedup();
-        tiles.retain(|tile| !self.solver.mesh.has(*tile));
+        tiles.retain(|tile| match &self.solver.domain {
+            None => !self.solver.mesh.has(*tile),
+            Some(domain) => !domain.is_made(*tile),
+        });
         self.make_in_order(&tiles)
     }
 
     /// Makes tiles that are not made yet, each after the one before it.
     pub(super) fn make_in_order(&mut self, tiles: &[usize]) -> Result<(), ModelError> {
         let layout = &self.solver.mesh.layout;
-        let cells = self.solver.mesh.len() as f64 + tiles.iter().map(|tile| layout.about(*tile)).sum::<f64>();
-        if cells > MOST_CELLS {
+        let processes = self.solver.domain.as_ref().map_or(1, Domain::count) as f64;
+        let made: f64 = match &self.solver.domain {
+            None => self.solver.mesh.len() as f64,
+            Some(domain) => domain.made.iter().map(|tile| layout.about(*tile as usize)).sum(),
+        };
+        let cells = made + tiles.iter().map(|tile| layout.about(*tile)).sum::<f64>();
+        if cells > MOST_CELLS * processes {
             return Err(setup(format!(
                 "the water would need about {cells:.1e} particles, more than the {MOST_CELLS:.0e} that fit in memory; \
                  take a larger flood.spacing_m"
             )));
         }
-        self.solver.mesh.make(tiles, &self.bed);
+        let kept = self.solver.domain.as_mut().map(|domain| domain.add_tiles(tiles));
+        self.solver.mesh.make(kept.as_deref().unwrap_or(tiles), &self.bed);
+        if let Some(domain) = &mut self.solver.domain {
+            domain.add_cells(&self.solver.mesh);
+        }
         self.solver.grow();
         if self.solver.end_local_steps() {
             let step = self.solver.time_step();
@@ -284,9 +372,11 @@ impl VoronoiFlood {
             self.state.beyond.push(self.boundaries.beyond_at_start(&self.solver, border));
         }
         if let Some(weather) = &mut self.weather {
-            weather.extend(&self.solver.mesh, &self.terrain, &mut self.state.soaked)?;
-            weather.roofs = walls::collect(&self.solver.mesh, &self.roofs);
+            let extended = weather.extend(&self.solver.mesh, &self.terrain, &mut self.state.soaked);
+            domain::agreed(self.solver.domain.as_ref(), extended)?;
+            weather.roofs = walls::collect(&self.solver.mesh, &self.roofs, self.solver.domain.as_ref());
         }
+        self.connect();
         Ok(())
     }
 
@@ -299,14 +389,17 @@ impl VoronoiFlood {
                 bodies.iter().any(|body| body.may_be_at(at, ground, layout.spacing()))
             })
         };
-        let all = 0..layout.tiles[0] * layout.tiles[1];
-        let tiles: Vec<usize> = if bodies.is_empty() { Vec::new() } else { all.into_par_iter().filter(wet).collect() };
+        let all = (0..layout.tiles[0] * layout.tiles[1]).into_par_iter();
+        // Each process looks at its own ground.
+        let own = all.filter(|tile| self.solver.domain.as_ref().is_none_or(|domain| domain.owns_tile(*tile)));
+        let tiles: Vec<usize> = if bodies.is_empty() { Vec::new() } else { own.filter(wet).collect() };
+        let tiles = self.solver.domain.as_ref().map(|domain| domain.union(&tiles)).unwrap_or(tiles);
         self.make_tiles(tiles)
     }
 
     /// Fills in the water at the start, and makes the tiles beside it.
     fn fill(&mut self, bodies: &[StartWater]) -> Result<(), ModelError> {
-        if self.solver.mesh.len() == 0 && bodies.is_empty() {
+        if self.tiles().is_empty() && bodies.is_empty() {
             return Ok(());
         }
         loop {
@@ -323,12 +416,12 @@ impl VoronoiFlood {
 
     /// Says of which bodies of water there is none.
     fn warn_of_empty(&mut self, bodies: &[StartWater]) {
-        if self.solver.mesh.len() == 0 && bodies.is_empty() {
+        if self.tiles().is_empty() && bodies.is_empty() {
             return;
         }
         for (number, body) in bodies.iter().enumerate() {
             let some = start::columns(&self.solver.mesh, std::slice::from_ref(body)).iter().any(|c| c.volume > 0.0);
-            if !some {
+            if !domain::any(self.solver.domain.as_ref(), some) {
                 self.state.warnings.push(format!(
                     "Body {number} of the water at the start (from 0, without blocks) holds no water: its level lies below \
                      the ground, its depth is 0, or it lies where there is no ground."
@@ -342,6 +435,7 @@ impl VoronoiFlood {
         let spacing = self.settings.spacing_m.unwrap_or_else(|| self.solver.mesh.layout.spacing());
         self.state.falling = drops(&self.settings, spacing, &self.terrain, seed);
         let none = self.solver.columns.iter().all(|column| column.volume <= 0.0) && self.state.falling.is_empty();
+        let none = !domain::any(self.solver.domain.as_ref(), !none);
         if none
             && self.weather.is_none()
             && self.structures.held.is_empty()

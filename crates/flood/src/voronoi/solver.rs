@@ -5,11 +5,13 @@
 //! faces bring in the order of its links, so that the result does not depend on the number of threads.
 
 use super::boundaries::Now;
+use super::domain::Domain;
 use super::fluxes::{Flux, Inputs, OnFaces, fluxes_of_chunk};
 use super::friction::Slowing;
 use super::local::Local;
 use super::mesh::{Mesh, NONE};
 use super::reconstruction::slopes;
+use super::sums::{ROUNDERS, ReproducibleSum, total};
 use super::walls::OverCrest;
 use super::water::{Column, Slopes, Water};
 use corpuscle_model::ExactSum;
@@ -49,6 +51,8 @@ pub(crate) struct Solver {
     chunks: Chunks,
     /// Cells take steps of their own where that pays; none where all are to take the same.
     pub local: Option<Local>,
+    /// The part of this process where several share the cells.
+    pub domain: Option<Domain>,
 }
 
 /// Which chunks have water, and which touch which.
@@ -77,18 +81,25 @@ struct Chunks {
 struct Found {
     wet: bool,
     /// Change of momentum over density by friction, m4/s.
-    slowed: [f64; 2],
+    slowed: [ReproducibleSum<f64>; 2],
     /// Shortest time step, s.
     step: f64,
     /// Whether tiles must be made.
     rim: bool,
-    /// Number of wet cells.
+    /// Number of wet cells, of all processes.
     count: u32,
     /// Whether a value is not finite.
     broken: bool,
 }
 
-const NOTHING: Found = Found { wet: false, slowed: [0.0; 2], step: f64::INFINITY, rim: false, count: 0, broken: false };
+const NOTHING: Found = Found {
+    wet: false,
+    slowed: [ReproducibleSum::NOTHING; 2],
+    step: f64::INFINITY,
+    rim: false,
+    count: 0,
+    broken: false,
+};
 
 /// What a step did to water and momentum over density: m3 and m4/s.
 #[derive(Debug, Clone, Copy, Default)]
@@ -125,6 +136,7 @@ impl Solver {
             broken: false,
             chunks: Chunks::default(),
             local: None,
+            domain: None,
         };
         solver.grow();
         solver
@@ -171,24 +183,28 @@ impl Solver {
 
     /// Finds wet chunks and the largest stable time step over the water of all cells.
     fn survey(&mut self) {
-        let Self { mesh, water, gravity, chunks, .. } = self;
-        let gravity = *gravity;
+        let Self { mesh, water, gravity, chunks, domain, .. } = self;
+        let (gravity, domain) = (*gravity, domain.as_ref());
         let survey_chunk = |(chunk, water): (usize, &[Water])| {
             let mut found = NOTHING;
             for (k, water) in water.iter().enumerate() {
                 let cell = chunk * CHUNK + k;
-                found.see(water, mesh.width[cell], mesh.rim[cell], gravity);
+                if domain.is_none_or(|domain| domain.owns(cell)) {
+                    found.see(water, mesh.width[cell], mesh.rim[cell], gravity);
+                } else {
+                    found.wet |= water.depth > 0.0;
+                }
             }
             found
         };
         water.par_chunks(CHUNK).enumerate().map(survey_chunk).collect_into_vec(&mut chunks.found);
-        self.time_step();
+        self.mark_wet();
     }
 
     /// Length of the next step, s: where cells may take steps of their own, and that pays, the longest of them.
     pub fn plan(&mut self) -> f64 {
         let shortest = self.time_step();
-        let Self { mesh, water, gravity, local, longest, .. } = self;
+        let Self { mesh, water, gravity, local, longest, domain, .. } = self;
         let Some(local) = local else { return shortest };
         let longest = *longest;
         let step = |cell: usize| {
@@ -196,29 +212,57 @@ impl Solver {
             let fastest = water.speed() + (*gravity * water.depth).sqrt();
             if water.depth > 0.0 { (COURANT * mesh.width[cell] / fastest).min(longest) } else { f64::INFINITY }
         };
-        shortest * local.plan(mesh, shortest, step)
+        shortest * local.plan(mesh, shortest, step, domain.as_ref())
     }
 
-    /// The time step that the last update allows, s; marks the chunks with water.
-    pub fn time_step(&mut self) -> f64 {
+    /// Marks the chunks with water.
+    fn mark_wet(&mut self) {
         let Chunks { wet, found, .. } = &mut self.chunks;
         wet.iter_mut().zip(&*found).for_each(|(wet, found)| *wet = found.wet);
-        found.iter().map(|found| COURANT * found.step).fold(self.longest, f64::min)
     }
 
-    /// The tiles that must be made, as water stands near them, in the order of their numbers.
+    /// Marks the chunk of a ghost cell with water.
+    pub fn mark_wet_ghost(&mut self, cell: usize) {
+        self.chunks.found[cell / CHUNK].wet = true;
+    }
+
+    /// The time step that the last update allows, s, in all processes; marks the chunks with water.
+    pub fn time_step(&mut self) -> f64 {
+        self.mark_wet();
+        let step = self.chunks.found.iter().map(|found| COURANT * found.step).fold(self.longest, f64::min);
+        self.domain.as_ref().map_or(step, |domain| domain.least(step))
+    }
+
+    /// The tiles that must be made, as water stands near them, in the order of their numbers: those of all processes.
     pub fn missing_tiles(&mut self) -> Vec<usize> {
-        let Self { mesh, water, chunks, .. } = self;
         let mut missing = Vec::new();
+        if !self.count() {
+            return missing;
+        }
+        let Self { mesh, water, chunks, domain, .. } = self;
         for chunk in (0..chunks.found.len()).filter(|chunk| chunks.found[*chunk].rim) {
             let cells = chunk * CHUNK..((chunk + 1) * CHUNK).min(water.len());
-            for cell in cells.filter(|cell| water[*cell].depth > 0.0) {
+            let owns = |cell: &usize| domain.as_ref().is_none_or(|domain| domain.owns(*cell));
+            for cell in cells.filter(|cell| water[*cell].depth > 0.0 && owns(cell)) {
                 mesh.take_rim(cell, &mut missing);
             }
+        }
+        if let Some(domain) = domain {
+            return domain.union(&missing);
         }
         missing.sort_unstable();
         missing.dedup();
         missing
+    }
+
+    /// Counts the wet cells of all processes; whether any of them needs tiles.
+    pub fn count(&mut self) -> bool {
+        let mut counts = [i64::from(self.chunks.found.iter().any(|found| found.rim)), self.wet_cells_here() as i64];
+        if let Some(domain) = &mut self.domain {
+            domain.total(&mut counts, &mut []);
+            domain.wet = counts[1] as usize;
+        }
+        counts[0] > 0
     }
 
     /// Whether a value became not finite in the last step.
@@ -228,7 +272,7 @@ impl Solver {
 
     /// A cell whose fluxes are no numbers.
     pub fn broken_cell(&self) -> Option<usize> {
-        (0..self.mesh.len()).find(|&cell| {
+        (0..self.mesh.len()).filter(|cell| self.owns(*cell)).find(|&cell| {
             let change = gathered(&self.mesh, &self.fluxes, cell);
             !(change.volume + change.momentum[0] + change.momentum[1]).is_finite()
         })
@@ -243,6 +287,11 @@ impl Solver {
 
     /// Number of wet cells.
     pub fn wet_cells(&self) -> usize {
+        self.domain.as_ref().map_or_else(|| self.wet_cells_here(), |domain| domain.wet)
+    }
+
+    /// Number of wet cells of this process.
+    pub fn wet_cells_here(&self) -> usize {
         self.chunks.found.iter().map(|found| found.count as usize).sum()
     }
 
@@ -264,6 +313,16 @@ impl Solver {
         let found = &mut chunks.found[cell / CHUNK];
         found.count -= u32::from(was_wet);
         found.see(&water[cell], mesh.width[cell], mesh.rim[cell], *gravity);
+    }
+
+    /// Takes the column of a ghost cell now and before the step.
+    pub fn set_ghost(&mut self, cell: usize, column: Column, before: Column) {
+        self.columns[cell] = column;
+        self.before[cell] = before;
+        self.water[cell] = self.mesh.water_as_it_is(cell, &column);
+        if self.water[cell].depth > 0.0 {
+            self.mark_wet_ghost(cell);
+        }
     }
 
     /// Goes through the chunks of cells with water, on all threads: `each` gets the numbers of the cells and their entries in `entries`.
@@ -301,6 +360,7 @@ impl Solver {
         }
         if self.steps_are_local() {
             self.survey();
+            self.count();
         }
         done
     }
@@ -318,18 +378,28 @@ impl Solver {
         local.iter_mut().filter(|local| local.is_on()).for_each(|local| local.show(second, columns, water));
         self.chunks.activate(second);
         self.find_slopes();
-        let by_ground = self.find_fluxes(step, &|border| boundaries(stage, border));
+        let mut by_ground = self.find_fluxes(step, &|border| boundaries(stage, border));
         self.pass_borders(step, book_border);
-        let slowed = if self.steps_are_local() { self.update_local(second) } else { self.update(step, second) };
+        let mut slowed = if self.steps_are_local() { self.update_local(second) } else { self.update(step, second) };
         let Self { mesh, local, columns, water, .. } = self;
         let on = local.iter().filter(|local| second && local.is_on());
         on.for_each(|local| local.show_ended(mesh, columns, water));
-        self.broken = self.chunks.found.iter().any(|found| found.broken);
-        for axis in 0..2 {
-            done.by_ground[axis] += 0.5 * step * by_ground[axis];
-            done.slowed[axis] += 0.5 * slowed[axis];
+        let mut counts = [i64::from(self.chunks.found.iter().any(|found| found.broken)), self.wet_cells_here() as i64];
+        if let Some(domain) = &mut self.domain {
+            let ([g, h], [p, q]) = (&mut by_ground, &mut slowed);
+            domain.total(&mut counts, &mut [g, h, p, q]);
+            domain.wet = counts[1] as usize;
         }
-        self.time_step();
+        self.broken = counts[0] > 0;
+        for axis in 0..2 {
+            done.by_ground[axis] += 0.5 * step * by_ground[axis].value();
+            done.slowed[axis] += 0.5 * slowed[axis].value();
+        }
+        let local = self.local.take();
+        let of_stage = Local::in_use(local.as_ref());
+        self.exchange(|cell| of_stage.is_none_or(|local| local.changes(cell, second)));
+        self.local = local;
+        self.mark_wet();
     }
 
     /// All cells take the same step from here on, as some were added; whether they did not before.
@@ -361,23 +431,24 @@ impl Solver {
     }
 
     /// Finds the flux through each face for a step of `step` s; the force of the ground on all the water over density, m4/s2.
-    fn find_fluxes(&mut self, step: f64, boundaries: &(impl Fn(usize) -> Now + Sync)) -> [f64; 2] {
+    fn find_fluxes(&mut self, step: f64, boundaries: &(impl Fn(usize) -> Now + Sync)) -> [ExactSum; 2] {
         self.for_active_faces(step, false, boundaries);
         if self.chunks.find_draining() {
             self.find_kept(step);
             self.for_active_faces(step, true, boundaries);
         }
-        sum(self.chunks.on_faces.iter().map(|found| &found.by_ground))
+        total(self.chunks.on_faces.iter().map(|found| &found.by_ground))
     }
 
     /// Finds the fluxes of the faces in active chunks; where `draining` holds, only of those beside a cell that lacks the water for its outflow, with
     /// what it has.
     fn for_active_faces(&mut self, step: f64, draining: bool, boundaries: &(impl Fn(usize) -> Now + Sync)) {
-        let Self { mesh, water, slopes, fluxes, chunks, gravity, borders, kept, most_faces, local, .. } = self;
+        let Self { mesh, water, slopes, fluxes, chunks, gravity, borders, kept, most_faces, local, domain, .. } = self;
         let local = Local::in_use(local.as_ref());
         let outflow_time = step * (*most_faces as f64);
         let kept = draining.then_some(&kept[..]);
-        let inputs = Inputs { mesh, water, slopes, borders, gravity: *gravity, kept, outflow_time, local };
+        let domain = domain.as_ref();
+        let inputs = Inputs { mesh, water, slopes, borders, gravity: *gravity, kept, outflow_time, local, domain };
         let Chunks { active_faces, were_active, all_kept, cells_of_faces, on_faces, .. } = chunks;
         let find = |(chunk, (fluxes, found)): (usize, (&mut [Flux], &mut OnFaces))| {
             if !active_faces[chunk] {
@@ -425,7 +496,7 @@ impl Solver {
             let face = &self.mesh.faces[border as usize];
             let cell = face.cells[0] as usize;
             let flux = &self.fluxes[border as usize];
-            let takes_part = local.is_none_or(|local| local.takes_part(cell));
+            let takes_part = local.is_none_or(|local| local.takes_part(cell)) && self.owns(cell);
             if !takes_part || (self.water[cell].depth <= 0.0 && flux.volume == 0.0) {
                 continue;
             }
@@ -446,9 +517,9 @@ impl Solver {
 
     /// Gives each cell what its faces bring in `step` s and slows it; in the second stage averages with the columns before the step. The change of
     /// momentum by friction, over density, m4/s.
-    fn update(&mut self, step: f64, second: bool) -> [f64; 2] {
-        let Self { mesh, columns, before, water, fluxes, chunks, slowing, gravity, .. } = self;
-        let (gravity, active) = (*gravity, &chunks.active_cells);
+    fn update(&mut self, step: f64, second: bool) -> [ExactSum; 2] {
+        let Self { mesh, columns, before, water, fluxes, chunks, slowing, gravity, domain, .. } = self;
+        let (gravity, active, domain) = (*gravity, &chunks.active_cells, domain.as_ref());
         let update = |(chunk, ((columns, before), water)): (usize, Cells)| {
             let mut found = NOTHING;
             if !active[chunk] {
@@ -456,25 +527,26 @@ impl Solver {
             }
             for (k, (column, water)) in columns.iter_mut().zip(water).enumerate() {
                 let cell = chunk * CHUNK + k;
+                if domain.is_some_and(|domain| !domain.owns(cell)) {
+                    found.wet |= water.depth > 0.0;
+                    continue;
+                }
                 let change = gathered(mesh, fluxes, cell);
                 found.broken |= !(change.volume + change.momentum[0] + change.momentum[1]).is_finite();
                 if column.volume > 0.0 || change.volume != 0.0 {
                     let slowed = go_on(column, &change, step, slowing, (cell, mesh.area[cell]));
-                    (0..2).for_each(|axis| found.slowed[axis] += slowed[axis]);
                     if second {
                         *column = column.mean(before[k]);
                     }
-                    let [p, q] = column.momentum;
+                    let unbounded = column.momentum;
                     *water = mesh.water(cell, column);
                     let weight = if second { 2.0 } else { 1.0 };
-                    found.slowed[0] += weight * (column.momentum[0] - p);
-                    found.slowed[1] += weight * (column.momentum[1] - q);
+                    found.slow(|axis| slowed[axis] + weight * (column.momentum[axis] - unbounded[axis]));
                 } else if second && before[k].volume > 0.0 {
                     *column = column.mean(before[k]);
-                    let [p, q] = column.momentum;
+                    let unbounded = column.momentum;
                     *water = mesh.water(cell, column);
-                    found.slowed[0] += 2.0 * (column.momentum[0] - p);
-                    found.slowed[1] += 2.0 * (column.momentum[1] - q);
+                    found.slow(|axis| 2.0 * (column.momentum[axis] - unbounded[axis]));
                 }
                 found.see(water, mesh.width[cell], mesh.rim[cell], gravity);
             }
@@ -482,13 +554,14 @@ impl Solver {
         };
         let cells = columns.par_chunks_mut(CHUNK).zip(before.par_chunks(CHUNK)).zip(water.par_chunks_mut(CHUNK));
         cells.enumerate().map(update).collect_into_vec(&mut chunks.found);
-        sum(chunks.found.iter().map(|found| &found.slowed))
+        total(chunks.found.iter().map(|found| &found.slowed))
     }
 
     /// The same for cells that take steps of their own: momentum counts by the part of its own step that a cell advances.
-    fn update_local(&mut self, second: bool) -> [f64; 2] {
-        let Self { mesh, columns, water, fluxes, chunks, slowing, gravity, local, .. } = self;
-        let Some(local) = local else { return [0.0; 2] };
+    fn update_local(&mut self, second: bool) -> [ExactSum; 2] {
+        let Self { mesh, columns, water, fluxes, chunks, slowing, gravity, local, domain, .. } = self;
+        let domain = domain.as_ref();
+        let Some(local) = local else { return [ExactSum::default(); 2] };
         let (gravity, active, were) = (*gravity, &chunks.active_cells, &chunks.wet);
         let mut sums = std::mem::take(&mut local.sum);
         let local = &*local;
@@ -500,7 +573,7 @@ impl Solver {
             }
             for (k, ((column, sum), water)) in columns.iter_mut().zip(sums).zip(water).enumerate() {
                 let cell = chunk * CHUNK + k;
-                if !local.takes_part(cell) {
+                if !local.takes_part(cell) || domain.is_some_and(|domain| !domain.owns(cell)) {
                     continue;
                 }
                 let change = gathered(mesh, fluxes, cell);
@@ -508,21 +581,21 @@ impl Solver {
                 let (start, step, share) = (local.start(cell), local.step(cell), local.share(cell));
                 let mut next = if second { *column } else { *start };
                 let slowed = go_on(&mut next, &change, step, slowing, (cell, mesh.area[cell]));
-                (0..2).for_each(|axis| found.slowed[axis] += share * slowed[axis]);
+                let by_friction = slowed.map(|slowed| share * slowed);
                 let mut weight = share;
                 if second {
                     let mean = next.mean(*start);
                     sum.volume += share * mean.volume;
                     (0..2).for_each(|axis| sum.momentum[axis] += share * mean.momentum[axis]);
                     if !local.ends(cell) {
+                        found.slow(|axis| by_friction[axis]);
                         continue;
                     }
                     (next, weight) = (*sum, 2.0);
                 }
-                let [p, q] = next.momentum;
+                let unbounded = next.momentum;
                 *water = mesh.water(cell, &mut next);
-                found.slowed[0] += weight * (next.momentum[0] - p);
-                found.slowed[1] += weight * (next.momentum[1] - q);
+                found.slow(|axis| by_friction[axis] + weight * (next.momentum[axis] - unbounded[axis]));
                 *column = next;
                 found.see(water, mesh.width[cell], mesh.rim[cell], gravity);
             }
@@ -533,7 +606,7 @@ impl Solver {
         if let Some(local) = &mut self.local {
             local.sum = sums;
         }
-        sum(self.chunks.found.iter().map(|found| &found.slowed))
+        total(self.chunks.found.iter().map(|found| &found.slowed))
     }
 
     /// Gives back the room that no cell needs.
@@ -558,6 +631,17 @@ impl Solver {
 }
 
 impl Found {
+    /// Adds to the change of momentum by friction.
+    #[inline(always)]
+    fn slow(&mut self, change: impl Fn(usize) -> f64) {
+        for (axis, sum) in self.slowed.iter_mut().enumerate() {
+            let change = change(axis);
+            if change != 0.0 {
+                sum.add(change, &ROUNDERS);
+            }
+        }
+    }
+
     #[inline]
     fn see(&mut self, water: &Water, width: f64, rim: u8, gravity: f64) {
         if water.depth > 0.0 {
@@ -687,8 +771,4 @@ fn insert(list: &mut Vec<u32>, value: u32) {
     if let Err(place) = list.binary_search(&value) {
         list.insert(place, value);
     }
-}
-
-fn sum<'a>(parts: impl Iterator<Item = &'a [f64; 2]> + Clone) -> [f64; 2] {
-    [0, 1].map(|axis| parts.clone().map(|part| part[axis]).collect::<ExactSum>().value())
 }

@@ -1,6 +1,7 @@
 //! A step of the model: what falls from the air, the water's motion, and what comes and goes.
 
-use super::patch::Change;
+use super::domain::{self, Domain};
+use super::patch::{Change, Changed};
 use super::solver::{BorderFlux, Solver};
 use super::water::Column;
 use super::{DENSITY, State, VoronoiFlood, maps, walls};
@@ -59,6 +60,7 @@ impl VoronoiFlood {
 
     pub(super) fn step(&mut self) -> Result<(), ModelError> {
         self.adapt()?;
+        self.balance_load_when_due()?;
         let (from, step) = (self.state.time, self.state.time_step);
         let until = from + step;
         self.move_water(from, step);
@@ -68,6 +70,7 @@ impl VoronoiFlood {
         self.state.particle_steps += self.solver.wet_cells() as u64;
         self.state.steps += 1;
         self.bring_and_take(from, until);
+        self.solver.exchange(|_| true);
         let missing = self.solver.missing_tiles();
         if !missing.is_empty() {
             self.make_tiles(missing)?;
@@ -85,22 +88,32 @@ impl VoronoiFlood {
         let now = |stage: usize, border: usize| boundaries.now(stage, border);
         let wet_depth = self.settings.wet_depth_m;
         let State { water, momentum, energy, forces, records, .. } = &mut self.state;
+        let pushes = &mut self.pushes;
+        pushes.fill([ExactSum::default(); 2]);
         // Thrusts of ground and walls are far larger than their sum: only that is booked.
         let mut gained = ExactSum::default();
         let obstacle_of = &self.obstacle_of;
-        forces.fill([0.0; 2]);
         let mut book = |border: usize, flux: BorderFlux| {
             water.book(-flux.volume);
             energy.book(-DENSITY * flux.energy);
-            if let Some(force) = forces.get_mut(obstacle_of[border] as usize) {
-                (0..2).for_each(|axis| force[axis] += flux.momentum[axis] / step);
+            if let Some(push) = pushes.get_mut(obstacle_of[border] as usize) {
+                (0..2).for_each(|axis| push[axis].add(flux.momentum[axis]));
             }
             flux.momentum.into_iter().for_each(|momentum| gained.add(-momentum));
         };
         let mut record = |solver: &Solver, done: f64| maps::record(solver, records, from + done, step, wet_depth);
         let done = self.solver.step(step, &now, &mut book, &mut record);
+        let domain = self.solver.domain.as_ref();
+        let sums = std::iter::once(&mut gained).chain(self.pushes.iter_mut().flatten());
+        domain::total(domain, &mut [], &mut sums.collect::<Vec<_>>());
         done.slowed.iter().chain(&done.by_ground).for_each(|momentum| gained.add(*momentum));
-        momentum.book(DENSITY * gained.value());
+        // Sums over all processes are booked by the first.
+        if domain.is_none_or(Domain::is_first) {
+            momentum.book(DENSITY * gained.value());
+        }
+        for (force, push) in forces.iter_mut().zip(&self.pushes) {
+            (0..2).for_each(|axis| force[axis] = push[axis].value() / step);
+        }
         for (impulse, force) in self.state.impulses.iter_mut().zip(&self.state.forces) {
             (0..2).for_each(|axis| impulse[axis] += step * force[axis]);
         }
@@ -112,25 +125,27 @@ impl VoronoiFlood {
         let step = until - from;
         let over_crests = walls::overtop(&mut self.solver, step);
         let Self { solver, inflows, structures, patches, weather, state, .. } = self;
-        let momentum = |change: &Change| DENSITY * (change.momentum[0] + change.momentum[1]);
+        let momentum = |change: &Changed| DENSITY * (change.momentum[0] + change.momentum[1]);
+        let is_first = solver.domain.as_ref().is_none_or(Domain::is_first);
         let (water, moments, energy) = (&mut state.water, &mut state.momentum, &mut state.energy);
-        moments.book(momentum(&over_crests));
-        let mut book = |change: Change| {
-            water.book(change.volume);
-            moments.book(momentum(&change));
-            energy.book(DENSITY * change.energy);
+        let mut book = |change: Changed| {
+            // Sums over all processes are booked by the first.
+            if is_first {
+                water.book(change.volume);
+                moments.book(momentum(&change));
+                energy.book(DENSITY * change.energy);
+            }
         };
+        book(Changed { momentum: over_crests.momentum, ..Changed::default() });
         patches.work(structures, &mut state.flows, solver, until, step, &mut book);
         for inflow in inflows.iter() {
             book(inflow.patch.add(solver, inflow.discharge.integral(from, until), inflow.velocity));
         }
         if let Some(weather) = weather {
-            let before = [state.soaked.rained.value(), state.soaked.infiltrated.value()];
-            let change = weather.pass(solver, &mut state.soaked, from, until, state.steps);
-            state.water.inflow.add(state.soaked.rained.value() - before[0]);
-            state.water.outflow.add(state.soaked.infiltrated.value() - before[1]);
-            state.momentum.book(momentum(&change));
-            state.energy.book(DENSITY * change.energy);
+            let done = weather.pass(solver, &mut state.soaked, from, until, state.steps);
+            book(Changed { volume: 0.0, ..done.change });
+            state.water.inflow.add_sum(&done.rained);
+            state.water.outflow.add_sum(&done.infiltrated);
         }
         self.fall(step);
     }
@@ -143,18 +158,27 @@ impl VoronoiFlood {
         let gravity = self.solver.gravity;
         let mut falling = std::mem::take(&mut self.state.falling);
         falling.iter_mut().for_each(|drop| drop.fall(gravity, step));
-        let bounds = self.terrain.bounds();
-        let landed = falling.extract_if(.., |drop| {
-            let [x, y] = inside(bounds, drop.position);
-            let cell = self.solver.mesh.cell_at([x, y]);
-            let level = cell.map_or_else(|| self.terrain.height(x, y), |cell| self.solver.water[cell].level);
-            drop.position[2] <= level
-        });
-        let landed: Vec<Drop> = landed.collect();
+        let landed: Vec<usize> = (0..falling.len()).filter(|number| self.has_landed(&falling[*number])).collect();
+        // All processes have all drops; whose ground it is says which have landed.
+        let landed = self.solver.domain.as_ref().map(|domain| domain.union(&landed)).unwrap_or(landed);
+        let landed: Vec<Drop> = landed.iter().rev().map(|number| falling.remove(*number)).collect();
+        let landed: Vec<Drop> = landed.into_iter().rev().collect();
         self.state.falling = falling;
         for drop in landed {
             self.land(&drop);
         }
+    }
+
+    /// Whether a drop has met water or ground of this process.
+    fn has_landed(&self, drop: &Drop) -> bool {
+        let [x, y] = inside(self.terrain.bounds(), drop.position);
+        let mesh = &self.solver.mesh;
+        if self.solver.domain.as_ref().is_some_and(|domain| !domain.owns_tile(mesh.layout.nearest([x, y]).0)) {
+            return false;
+        }
+        let level =
+            mesh.cell_at([x, y]).map_or_else(|| self.terrain.height(x, y), |cell| self.solver.water[cell].level);
+        drop.position[2] <= level
     }
 
     fn land(&mut self, drop: &Drop) {
@@ -163,19 +187,25 @@ impl VoronoiFlood {
         // An error of too many cells is returned by the step that needs the next ones.
         let _ = self.make_tiles(vec![tile]);
         let momentum = [0, 1].map(|axis| drop.volume * drop.velocity[axis]);
-        match self.solver.mesh.cell_at([x, y]) {
-            Some(cell) => {
-                let mut change = Change::default();
-                change.apply(&mut self.solver, cell, Column { volume: drop.volume, momentum });
-                self.state.energy.book(DENSITY * change.energy);
-                // The drop's own momentum is in the ledger already.
-                let lost = [0, 1].map(|axis| change.momentum[axis] - momentum[axis]);
-                self.state.momentum.book(DENSITY * (lost[0] + lost[1]));
-            }
-            None => {
-                self.state.water.outflow.add(drop.volume);
-                self.state.momentum.book(-DENSITY * (momentum[0] + momentum[1]));
-            }
+        let cell = self.solver.mesh.cell_at([x, y]).filter(|cell| self.solver.owns(*cell));
+        let mut change = Change::default();
+        if let Some(cell) = cell {
+            change.apply(&mut self.solver, cell, Column { volume: drop.volume, momentum });
+        }
+        let domain = self.solver.domain.as_ref();
+        let (is_on_cell, change) = (domain::any(domain, cell.is_some()), change.in_all(domain));
+        // Sums over all processes are booked by the first.
+        if domain.is_some_and(|domain| !domain.is_first()) {
+            return;
+        }
+        if is_on_cell {
+            self.state.energy.book(DENSITY * change.energy);
+            // The drop's own momentum is in the ledger already.
+            let lost = [0, 1].map(|axis| change.momentum[axis] - momentum[axis]);
+            self.state.momentum.book(DENSITY * (lost[0] + lost[1]));
+        } else {
+            self.state.water.outflow.add(drop.volume);
+            self.state.momentum.book(-DENSITY * (momentum[0] + momentum[1]));
         }
     }
 
@@ -183,6 +213,7 @@ impl VoronoiFlood {
     fn breakdown(&mut self, time: f64) -> ModelError {
         let cell = self.solver.broken_cell();
         let place = cell.map(|cell| self.terrain.to_own(self.solver.mesh.centroid[cell]));
+        let place = domain::first_of(self.solver.domain.as_ref(), place);
         self.solver.take_back();
         let place = place.map_or(String::new(), |[x, y]| format!(" at [{x:.6}, {y:.6}]"));
         ModelError::Breakdown {

@@ -2,7 +2,7 @@
 
 use super::{Due, Gas};
 use crate::method::{Mover, Pause};
-use corpuscle_model::{ExactSum, ModelError};
+use corpuscle_model::{CompensatedSum, ModelError};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Events between two checks whether to stop.
@@ -207,7 +207,7 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world_mut();
         let momenta =
             (0..world.balls.len()).map(|ball| world.mass(ball) * world.balls[ball].velocity.iter().sum::<f64>());
-        let turned = -2.0 * momenta.collect::<ExactSum>().value();
+        let turned = -2.0 * momenta.collect::<CompensatedSum>().value();
         self.live.momentum.add(turned);
         let world = self.mover.world_mut();
         world.reverse();

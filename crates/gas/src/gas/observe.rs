@@ -7,7 +7,7 @@ use crate::measure::transport::growth;
 use crate::measure::{Estimate, Maxwell, Sample, Snapshot, mixing_entropy, p_value};
 use crate::method::{Mover, Nearest};
 use crate::world::{Moments, Well, speed};
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 
 /// Samples over which current values such as the pressure are averaged.
 const RECENT: usize = 10;
@@ -62,14 +62,14 @@ impl<const D: usize> Gas<D> {
     pub fn kinetic_energy(&self) -> f64 {
         let world = self.mover.world();
         let one = |ball| 0.5 * world.mass(ball) * speed(&world.state(ball, self.now()).1).powi(2);
-        (0..world.balls.len()).map(one).collect::<ExactSum>().value()
+        (0..world.balls.len()).map(one).collect::<CompensatedSum>().value()
     }
 
     /// Kinetic energy of the motion relative to the flow of a sheared box, at the time shown; else that of all motion.
     pub fn thermal_energy(&self) -> f64 {
         let world = self.mover.world();
         let one = |ball| 0.5 * world.mass(ball) * speed(&world.thermal_velocity(ball, self.now())).powi(2);
-        (0..world.balls.len()).map(one).collect::<ExactSum>().value()
+        (0..world.balls.len()).map(one).collect::<CompensatedSum>().value()
     }
 
     /// Momentum of the motion relative to the flow, at the time shown.
@@ -77,7 +77,7 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world();
         std::array::from_fn(|axis| {
             let one = |ball| world.mass(ball) * world.thermal_velocity(ball, self.now())[axis];
-            (0..world.balls.len()).map(one).collect::<ExactSum>().value()
+            (0..world.balls.len()).map(one).collect::<CompensatedSum>().value()
         })
     }
 
@@ -94,7 +94,7 @@ impl<const D: usize> Gas<D> {
             world.mass(ball) * (0..D).map(|axis| -world.field.gravity[axis] * place[axis]).sum::<f64>()
         };
         let raised =
-            if world.falls() { (0..world.balls.len()).map(heights).collect::<ExactSum>().value() } else { 0.0 };
+            if world.falls() { (0..world.balls.len()).map(heights).collect::<CompensatedSum>().value() } else { 0.0 };
         raised + world.well.as_ref().map_or(0.0, Well::energy)
     }
 
@@ -115,7 +115,7 @@ impl<const D: usize> Gas<D> {
         std::array::from_fn(|axis| {
             (0..world.balls.len())
                 .map(|ball| world.mass(ball) * world.state(ball, self.now()).1[axis])
-                .collect::<ExactSum>()
+                .collect::<CompensatedSum>()
                 .value()
         })
     }
@@ -136,7 +136,8 @@ impl<const D: usize> Gas<D> {
         let masses: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
         std::array::from_fn(|axis| {
             let place = |ball: usize| world.unwrapped(ball, now)[axis];
-            (0..world.balls.len()).map(|ball| world.mass(ball) * place(ball)).collect::<ExactSum>().value() / masses
+            (0..world.balls.len()).map(|ball| world.mass(ball) * place(ball)).collect::<CompensatedSum>().value()
+                / masses
         })
     }
 
@@ -503,7 +504,7 @@ impl<const D: usize> Gas<D> {
     fn sample(&self, time: f64) -> Sample {
         let world = self.mover.world();
         let now = world.in_window(time);
-        let mut kinetic = ExactSum::default();
+        let mut kinetic = CompensatedSum::default();
         let (mut mass, mut momentum, mut under_way) = (0.0, [0.0; D], 0.0);
         for ball in 0..world.balls.len() {
             let (own, velocity) = (world.mass(ball), world.thermal_velocity(ball, now));

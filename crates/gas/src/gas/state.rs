@@ -6,7 +6,7 @@ use crate::engine;
 use crate::measure::Measures;
 use crate::method::{Faults, Mover};
 use crate::world::{Ball, Moments, NONE, Record, Slide, Tally, Wall, WallTally, Well, World};
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 use corpuscle_model::ModelError;
 use serde::{Deserialize, Serialize};
 
@@ -42,7 +42,7 @@ struct SavedWorld {
     low: Vec<f64>,
     length: Vec<f64>,
     now: f64,
-    origin: ExactSum,
+    origin: CompensatedSum,
     tally: Tally,
     wall_tallies: Vec<WallTally>,
     standstill: u32,

@@ -4,7 +4,7 @@ use super::World;
 use super::contact::Mode;
 use super::wall::{Facing, Wall};
 use crate::random::{flux, normal};
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 use serde::{Deserialize, Serialize};
 
 /// Sums over the hits of a wall.
@@ -12,12 +12,12 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct WallTally {
     pub hits: u64,
     /// Momentum given to the wall, along its axis.
-    pub momentum: ExactSum,
+    pub momentum: CompensatedSum,
     /// Energy given to the gas, where it was gained and where it was lost.
-    pub gained: ExactSum,
-    pub lost: ExactSum,
+    pub gained: CompensatedSum,
+    pub lost: CompensatedSum,
     /// Momentum along the other axes given to the gas (thermal walls).
-    pub dragged: ExactSum,
+    pub dragged: CompensatedSum,
 }
 
 impl WallTally {

@@ -20,7 +20,7 @@ pub(crate) use shear::{ShearTally, Slide};
 pub(crate) use wall::{Facing, Wall, first_contact};
 pub(crate) use well::Well;
 
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
@@ -53,7 +53,7 @@ pub(crate) struct World<const D: usize> {
     /// Time of the last event, in the window.
     pub now: f64,
     /// Beginning of the window.
-    pub origin: ExactSum,
+    pub origin: CompensatedSum,
     pub tally: Tally,
     /// Sums over hits of each wall.
     pub wall_tallies: Vec<WallTally>,
@@ -80,7 +80,7 @@ pub(crate) struct Tally {
     /// Length of all paths up to the last time that each was bent.
     pub path: f64,
     /// Energy lost in collisions.
-    pub dissipated: ExactSum,
+    pub dissipated: CompensatedSum,
     /// What shear did.
     pub shear: ShearTally,
 }
@@ -116,7 +116,7 @@ impl<const D: usize> World<D> {
             low,
             length,
             now: 0.0,
-            origin: ExactSum::default(),
+            origin: CompensatedSum::default(),
             tally: Tally::default(),
             wall_tallies: Vec::new(),
             standstill: 0,

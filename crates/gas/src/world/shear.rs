@@ -5,7 +5,7 @@
 
 use super::contact::{Field, Sheared};
 use super::{Ball, World};
-use corpuscle_model::ExactSum;
+use corpuscle_model::CompensatedSum;
 use serde::{Deserialize, Serialize};
 
 /// How the image of the box above it slides; a speed of 0 for a box at rest.
@@ -20,10 +20,10 @@ pub(crate) struct Slide {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ShearTally {
     /// Work, where it is gained and where it is lost.
-    pub gained: ExactSum,
-    pub lost: ExactSum,
+    pub gained: CompensatedSum,
+    pub lost: CompensatedSum,
     /// Momentum along x.
-    pub momentum: ExactSum,
+    pub momentum: CompensatedSum,
 }
 
 impl ShearTally {

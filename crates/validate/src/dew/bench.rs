@@ -14,18 +14,21 @@ pub(crate) const BENCHES: &[Bench] = &[
         name: "dew/plate-100k",
         about: "100,000 particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
         needs_gpu: false,
+        is_shared: false,
         run: |options| rate("dew/plate-100k", 46, options),
     },
     Bench {
         name: "dew/plate-1m",
         about: "A million particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
         needs_gpu: false,
+        is_shared: false,
         run: |options| rate("dew/plate-1m", 100, options),
     },
     Bench {
         name: "dew/plate-5m",
         about: "Five million particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
         needs_gpu: true,
+        is_shared: false,
         run: |options| rate("dew/plate-5m", 171, options),
     },
 ];
@@ -82,7 +85,7 @@ mod tests {
     fn a_bench_of_dew_runs_on_the_gpu() {
         let Some(gpu) = require_gpu("a bench of dew") else { return };
         let name = Some(gpu.name.clone());
-        let options = BenchOptions { quick: true, gpu: Some(gpu), passes: true };
+        let options = BenchOptions { quick: true, gpu: Some(gpu), passes: true, ..BenchOptions::default() };
         let [rate] = &rate("dew/plate", 12, &options)[..] else { panic!("no rate") };
         assert!(rate.device == name && rate.threads == 0 && rate.particles > 1000, "{rate:?}");
         assert!(rate.rate > 0.0 && rate.bytes_per_particle > 100.0, "{rate:?}");

@@ -4,7 +4,7 @@ use super::rows;
 use crate::device::refuse_on_gpu;
 use crate::{Case, Options, Row};
 use corpuscle_dew::drops::{Cap, Drop, DropLaws, Drops, Patch, Retention, Surfaces, WATER_DENSITY};
-use corpuscle_model::{ExactSum, ModelError};
+use corpuscle_model::{CompensatedSum, ModelError};
 use corpuscle_solids::{Pose, Shape, Solid};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -250,7 +250,7 @@ fn merging_errors() -> [f64; 3] {
         drops.add(0, [0.0, away * angle.cos(), away * angle.sin()], [0.0, angle.sin(), part], mass);
     }
     let sums = |drops: &[Drop]| -> [f64; 3] {
-        let sum = |of: &dyn Fn(&Drop) -> f64| drops.iter().map(of).collect::<ExactSum>().value();
+        let sum = |of: &dyn Fn(&Drop) -> f64| drops.iter().map(of).collect::<CompensatedSum>().value();
         [sum(&|drop| drop.mass), sum(&|drop| drop.mass * drop.velocity[1]), sum(&|drop| drop.mass * drop.velocity[2])]
     };
     let before = sums(drops.drops());

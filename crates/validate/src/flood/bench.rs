@@ -5,6 +5,7 @@ use crate::bench::Measuring;
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_flood::{Filling, FloodModel, InitialWater, SphSweFlood, StartWater, VoronoiFlood};
 use corpuscle_model::ModelError;
+use corpuscle_processes::Processes;
 use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning, Scheme};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
@@ -15,60 +16,70 @@ pub(crate) const BENCHES: &[Bench] = &[
         name: "flood/voronoi-60k",
         about: "Scheme voronoi, everything on, 60,000 particles in waves over rough ground.",
         needs_gpu: false,
+        is_shared: true,
         run: |options| voronoi_rate("flood/voronoi-60k", 60_000, true, options),
     },
     Bench {
         name: "flood/voronoi-1m",
         about: "Scheme voronoi, everything on, a million particles in waves over rough ground.",
         needs_gpu: false,
+        is_shared: true,
         run: |options| voronoi_rate("flood/voronoi-1m", 1_000_000, true, options),
     },
     Bench {
         name: "flood/voronoi-still-60k",
         about: "Scheme voronoi, everything on, 60,000 particles in still water over rough ground.",
         needs_gpu: false,
+        is_shared: true,
         run: |options| voronoi_rate("flood/voronoi-still-60k", 60_000, false, options),
     },
     Bench {
         name: "flood/voronoi-still-1m",
         about: "Scheme voronoi, everything on, a million particles in still water over rough ground.",
         needs_gpu: false,
+        is_shared: true,
         run: |options| voronoi_rate("flood/voronoi-still-1m", 1_000_000, false, options),
     },
     Bench {
         name: "flood/voronoi-10m",
         about: "Scheme voronoi, everything on, ten million particles in waves over rough ground.",
         needs_gpu: true,
+        is_shared: true,
         run: |options| voronoi_rate("flood/voronoi-10m", 10_000_000, true, options),
     },
     Bench {
         name: "flood/voronoi-still-10m",
         about: "Scheme voronoi, everything on, ten million particles in still water over rough ground.",
         needs_gpu: true,
+        is_shared: true,
         run: |options| voronoi_rate("flood/voronoi-still-10m", 10_000_000, false, options),
     },
     Bench {
         name: "flood/sph-swe-60k",
         about: "Scheme sph-swe, 60,000 particles in waves over rough ground (the paper: 75 steps a second on a GTX 1060).",
         needs_gpu: false,
+        is_shared: false,
         run: |options| sph_swe_rate("flood/sph-swe-60k", 60_000, options),
     },
     Bench {
         name: "flood/error-cost",
         about: "Error and cost of the dam breaks of Stoker (wet) and Ritter (dry) by scheme voronoi at 4, 2 and 1 m; use --threads 1.",
         needs_gpu: false,
+        is_shared: false,
         run: |_| error_cost::measured(),
     },
     Bench {
         name: "flood/voronoi-vortex",
         about: "Error and cost of a vortex that a current carries through a periodic box three times, by scheme voronoi at 2, 1 and 0.5 m; use --threads 1.",
         needs_gpu: false,
+        is_shared: false,
         run: |_| error_cost::of_vortex(),
     },
     Bench {
         name: "flood/voronoi-time-steps",
         about: "Scheme voronoi with finer cells over a part (a quarter as wide over 8 m, an eighth over 4 m), with one time step for all and with local time steps, in turn; use --threads 1.",
         needs_gpu: false,
+        is_shared: false,
         run: |_| time_steps::measured(),
     },
 ];
@@ -99,8 +110,14 @@ fn sph_swe_rate(name: &'static str, particles: usize, options: &BenchOptions) ->
 }
 
 fn voronoi_rate(name: &'static str, particles: usize, waves: bool, options: &BenchOptions) -> Vec<Rate> {
-    let measure = |flood| Measuring { name, ..MEASURING }.rate(flood, options);
-    voronoi(particles, waves).and_then(measure).unwrap_or_default().into_iter().collect()
+    let Ok(mut flood) = filled_on(&options.processes, particles, if waves { 0.1 } else { 0.0 }, |_| ()) else {
+        return Vec::new();
+    };
+    if !options.processes.is_first() {
+        flood.follow();
+        return Vec::new();
+    }
+    Measuring { name, ..MEASURING }.rate(flood, options).unwrap_or_default().into_iter().collect()
 }
 
 /// The same water by scheme voronoi; still at a level of 1 m where it has no waves.
@@ -114,6 +131,16 @@ pub(super) fn filled(
     height: f64,
     change: impl FnOnce(&mut Settings),
 ) -> Result<VoronoiFlood, ModelError> {
+    filled_on(&Processes::alone(), particles, height, change)
+}
+
+/// The same, shared out over processes.
+fn filled_on(
+    processes: &Processes,
+    particles: usize,
+    height: f64,
+    change: impl FnOnce(&mut Settings),
+) -> Result<VoronoiFlood, ModelError> {
     let mut settings = Settings { manning: Manning::Number(0.03), ..basin(Scheme::Voronoi) };
     change(&mut settings);
     let water = StartWater {
@@ -121,7 +148,7 @@ pub(super) fn filled(
         polygon: None,
         velocity: Box::new(move |_, y| [10.0 * height * (0.07 * y).sin(), 0.0]),
     };
-    VoronoiFlood::with_water(&settings, SEED, Path::new("."), ground(particles), &[water])
+    VoronoiFlood::with_water_on(processes, &settings, SEED, Path::new("."), ground(particles), &[water])
 }
 
 /// Seed of where particles are at the start.

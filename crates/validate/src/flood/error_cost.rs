@@ -57,6 +57,7 @@ fn entries<M: Stepped>(
         device: None,
         rate,
         rate_unit: unit.into(),
+        processes: None,
         bytes_per_particle: model.bytes() as f64 / particles as f64,
         passes: Vec::new(),
     };

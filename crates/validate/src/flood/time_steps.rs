@@ -51,6 +51,7 @@ fn in_turn(part: &str, spacing_m: f64, radius_m: f64) -> Result<Vec<Rate>, Model
             device: None,
             rate: costs[ROUNDS / 2] * threads as f64,
             rate_unit: "core_s_per_s".into(),
+            processes: None,
             bytes_per_particle: flood.bytes() as f64 / particles as f64,
             passes: Vec::new(),
         }

@@ -14,6 +14,7 @@ macro_rules! fluid {
             about: "Equal balls in a periodic box, event-driven, after five collisions of each; dimensions, packing and \
                     number by name.",
             needs_gpu: false,
+            is_shared: false,
             run: |options| {
                 let name = concat!("gas/", $dimensions, "d-", $packing, "-", $words);
                 rate::<$dimensions>(name, $count, $packing, options)
@@ -67,6 +68,7 @@ fn measure<const D: usize>(name: &str, count: usize, packing: f64, seconds: f64)
         threads: 1,
         rate: (gas.collisions() - before) as f64 / start.elapsed().as_secs_f64(),
         rate_unit: "collisions_per_s".into(),
+        processes: None,
         bytes_per_particle: gas.bytes() as f64 / count as f64,
         device: None,
         passes: Vec::new(),

@@ -38,20 +38,15 @@ impl ModelKind for Kind {
     }
 
     fn open(&self, opening: Opening<'_>) -> Result<Opened, Error> {
-        let Opening { scene, folder, is_restored } = opening;
+        let Opening { scene, folder, processes, is_restored } = opening;
         let (seed, until) = (scene.seed, scene.run.until_s);
         let FloodScene { terrain, flood } = scene.model.get_mut().ok_or_else(no_flood)?;
-        let terrain = Arc::new(ground(terrain, seed, folder)?);
-        check_observed_extent(flood, &terrain)?;
         let mut notes = Vec::new();
-        if flood.spacing_m.is_none() {
-            let chosen = default_spacing(flood, &terrain, folder, until)?;
-            flood.spacing_m = Some(chosen.spacing);
-            notes.push(chosen.to_string());
-        }
-        refuse_more_than_memory(flood, &terrain, folder, until)?;
+        let prepared = prepare(terrain, flood, (seed, until, folder), &mut notes);
+        // A file may be missing for one of several processes only.
+        let terrain = processes.agree(prepared, |error| ModelError::Setup(error).into())?;
         let new = if is_restored { corpuscle_flood::open_to_restore } else { corpuscle_flood::open };
-        let model = new(flood, seed, folder, terrain.clone())?;
+        let model = new(processes, flood, seed, folder, terrain.clone())?;
         *flood = model.settings().clone();
         check_inflow(flood, until, &terrain, folder)?;
         Ok(Opened { model, terrain: Some(terrain), notes })
@@ -107,6 +102,24 @@ impl ModelKind for Kind {
         let terrain = scenery.terrain().ok_or_else(no_flood)?;
         Ok(Box::new(FloodPicture::new(context, flood, terrain, settings)?))
     }
+}
+
+/// Opens the terrain, checks what memory the flood takes, and chooses its spacing where it has none.
+fn prepare(
+    terrain: &corpuscle_scene::Terrain,
+    flood: &mut Flood,
+    (seed, until, folder): (u64, f64, &Path),
+    notes: &mut Vec<String>,
+) -> Result<Arc<Terrain>, Error> {
+    let terrain = Arc::new(ground(terrain, seed, folder)?);
+    check_observed_extent(flood, &terrain)?;
+    if flood.spacing_m.is_none() {
+        let chosen = default_spacing(flood, &terrain, folder, until)?;
+        flood.spacing_m = Some(chosen.spacing);
+        notes.push(chosen.to_string());
+    }
+    refuse_more_than_memory(flood, &terrain, folder, until)?;
+    Ok(terrain)
 }
 
 /// Refuses water that would take more memory than there can be.

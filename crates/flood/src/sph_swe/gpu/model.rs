@@ -14,7 +14,7 @@ use crate::sph_swe::step::CELL_OVER_H;
 use crate::sph_swe::{DENSITY, SphSweFlood, State};
 use crate::zone::Source;
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming, wait_for};
-use corpuscle_model::{Advance, AdvanceObserver, ExactSum, Glance, GpuModel, Model, ModelError, ModelProgress};
+use corpuscle_model::{Advance, AdvanceObserver, CompensatedSum, Glance, GpuModel, Model, ModelError, ModelProgress};
 use corpuscle_scene::{SmoothingForm, Table};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -149,8 +149,8 @@ impl SphSweFlood {
     }
 
     /// Upper bound on the particles spawned within `horizon` s from `now` on; `residual_volume` is that of each source.
-    fn max_spawned(&self, residual_volume: &[ExactSum], now: f64, horizon: f64) -> usize {
-        let of_one = |(source, residual_volume): (&Source, &ExactSum)| {
+    fn max_spawned(&self, residual_volume: &[CompensatedSum], now: f64, horizon: f64) -> usize {
+        let of_one = |(source, residual_volume): (&Source, &CompensatedSum)| {
             residual_volume.value() + source.discharge.integral(now, now + horizon)
         };
         let of_sources = self
@@ -305,7 +305,7 @@ impl SphSweFlood {
         &mut self,
         done: &BatchResult,
         particles: Vec<Particle>,
-        residual_volume: Vec<ExactSum>,
+        residual_volume: Vec<CompensatedSum>,
         last_sample: f64,
     ) -> Result<(), GpuError> {
         let Some(on_gpu) = &self.on_gpu else { return Ok(()) };
@@ -339,7 +339,7 @@ impl SphSweFlood {
     }
 
     /// The particles that the sources release from `now` to `until`, the earliest first.
-    fn spawn_requests(&self, residual_volume: &[ExactSum], now: f64, until: f64) -> Vec<SpawnRequest> {
+    fn spawn_requests(&self, residual_volume: &[CompensatedSum], now: f64, until: f64) -> Vec<SpawnRequest> {
         let sources = self.sources.iter().zip(residual_volume).enumerate();
         let spawn_requests = sources.flat_map(|(number, (source, residual_volume))| {
             let times = times(&source.discharge, residual_volume.value(), self.volume, now, until);

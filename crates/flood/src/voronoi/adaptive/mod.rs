@@ -109,6 +109,8 @@ impl VoronoiFlood {
 
     /// Remakes all cells and carries the state of the old ones over.
     fn regrade(&mut self, blocks: Blocks) -> Result<(), ModelError> {
+        // New cells of this process lie on cells of others too, as far away as the coarsest are wide.
+        self.update_ghost_tiles()?;
         let old = self.remake(blocks)?;
         let carried = carry::carry(&old, &self.solver, &self.bed, &self.terrain);
         self.solver.columns = carried.columns;
@@ -119,6 +121,7 @@ impl VoronoiFlood {
         borders::carry(&old.borders, &self.borders(), &mut self.state.beyond);
         self.state.remakes += 1;
         self.solver.refresh_water();
+        self.connect();
         loop {
             let missing = self.solver.missing_tiles();
             if missing.is_empty() {
@@ -136,19 +139,37 @@ impl VoronoiFlood {
 
     /// Remakes the cells, dry, with the blocks of a state; returns whether they are valid.
     pub(super) fn restore_blocks(&mut self, levels: &[(u32, u8)]) -> Result<bool, ModelError> {
-        let present = self.solver.mesh.layout.blocks();
-        if present.finer() == levels {
+        if self.solver.mesh.layout.blocks().finer() == levels {
             return Ok(true);
         }
-        let allowed = self.adaptive.as_ref().is_some_and(|adaptive| adaptive.allows(levels));
-        let Some(blocks) = present.with(levels).filter(|_| allowed) else { return Ok(false) };
+        let Some(blocks) = self.allowed_blocks(levels) else { return Ok(false) };
         self.remake(blocks)?;
         Ok(true)
     }
 
+    /// Blocks with levels, if this flood may have them.
+    pub(super) fn allowed_blocks(&self, levels: &[(u32, u8)]) -> Option<Blocks> {
+        let present = self.solver.mesh.layout.blocks();
+        if present.finer() == levels {
+            return Some(present.clone());
+        }
+        let allowed = self.adaptive.as_ref().is_some_and(|adaptive| adaptive.allows(levels));
+        present.with(levels).filter(|_| allowed)
+    }
+
     /// Remakes the cells of all tiles, with other blocks, dry; returns the old ones.
     pub(super) fn remake(&mut self, blocks: Blocks) -> Result<Old, ModelError> {
-        let tiles: Vec<usize> = self.solver.mesh.made.iter().map(|tile| *tile as usize).collect();
+        let tiles: Vec<usize> = self.tiles().iter().map(|tile| *tile as usize).collect();
+        self.remake_tiles(blocks, &tiles, None)
+    }
+
+    /// Makes the cells of tiles anew, dry, with other blocks and, where several processes share them, tiles of other processes; returns the old ones.
+    pub(super) fn remake_tiles(
+        &mut self,
+        blocks: Blocks,
+        tiles: &[usize],
+        owners: Option<Vec<u16>>,
+    ) -> Result<Old, ModelError> {
         let layout = self.solver.mesh.layout.with(blocks);
         let longest = longest_step(&layout, self.solver.gravity);
         let mut mesh = Mesh::new(layout);
@@ -156,6 +177,11 @@ impl VoronoiFlood {
         let slowing = Slowing::of(&self.roughness, self.solver.gravity);
         let mut solver = Solver::new(mesh, self.solver.gravity, slowing, longest, self.boundaries.brings());
         solver.local = (self.settings.time_steps == TimeSteps::Local).then(Local::default);
+        solver.domain = self.solver.domain.take();
+        if let Some(domain) = &mut solver.domain {
+            domain.clear();
+            owners.into_iter().for_each(|owners| domain.assign(&solver.mesh.layout, owners));
+        }
         let borders = self.borders();
         let old = Old {
             solver: std::mem::replace(&mut self.solver, solver),
@@ -182,9 +208,9 @@ impl VoronoiFlood {
 
     /// Finds the cells of inflows and structures.
     pub(super) fn find_patches(&mut self) {
-        let mesh = &self.solver.mesh;
-        self.patches = Patches::of(&self.structures, mesh);
-        self.inflows.iter_mut().for_each(|inflow| inflow.patch = Patch::of(&inflow.zone, mesh));
+        let (mesh, domain) = (&self.solver.mesh, self.solver.domain.as_ref());
+        self.patches = Patches::of(&self.structures, mesh, domain);
+        self.inflows.iter_mut().for_each(|inflow| inflow.patch = Patch::of(&inflow.zone, mesh, domain));
     }
 
     /// The border faces as they are.

@@ -1,6 +1,7 @@
 //! Refinement criteria: the resolution that the water requires.
 
 use super::super::VoronoiFlood;
+use super::super::domain::{any, total};
 use super::super::mesh::{Blocks, Layout};
 use super::super::solver::Solver;
 use corpuscle_scene::Adaptive as Settings;
@@ -38,11 +39,17 @@ impl VoronoiFlood {
         let present = |block: usize| blocks.levels()[block].max(adaptive.of_parts.get(block).copied().unwrap_or(0));
         let mut levels_required = BlockLevels::new(blocks, &solver.mesh.layout, adaptive.settings.every_steps);
         let mut is_short = false;
-        for (cell, [least, most]) in adaptive.required.iter().enumerate().filter(|(_, required)| required[1] > 0) {
+        let own = adaptive.required.iter().enumerate().filter(|(cell, _)| solver.owns(*cell));
+        for (cell, [least, most]) in own.filter(|(_, required)| required[1] > 0) {
             let at = solver.mesh.centroid[cell];
             levels_required.add(at, [*least, *most]);
             is_short |= *least > 0 && levels_required.round(at, *least).any(|block| present(block) < *least);
         }
+        let domain = solver.domain.as_ref();
+        if let Some(domain) = domain {
+            levels_required.required.iter_mut().for_each(|levels| domain.most(levels));
+        }
+        let is_short = any(domain, is_short);
         let [least, most] = levels_required.spread();
         let mut new = blocks.cleared();
         for (block, level) in new.levels_mut().iter_mut().enumerate() {
@@ -52,7 +59,9 @@ impl VoronoiFlood {
                 if adaptive.of_parts.get(block).is_some_and(|of_parts| *of_parts >= required) { 0 } else { required };
         }
         let spared = points(blocks) - points(&new);
-        (new != *blocks && (is_short || spared > SUPERFLUOUS_SHARE * solver.mesh.len() as f64)).then_some(new)
+        let mut cells = [(0..solver.mesh.len()).filter(|cell| solver.owns(*cell)).count() as i64];
+        total(domain, &mut cells, &mut []);
+        (new != *blocks && (is_short || spared > SUPERFLUOUS_SHARE * cells[0] as f64)).then_some(new)
     }
 }
 

@@ -1,11 +1,12 @@
 //! Boundaries from a scene, and what they do at each face from step to step.
 
+use super::super::domain::{total, total_of};
 use super::super::mesh::{LINE, SOLID};
 use super::super::reconstruction::AtFace;
 use super::super::solver::Solver;
 use super::{Boundary, Now, state};
 use crate::setup::{load, setup};
-use corpuscle_model::ModelError;
+use corpuscle_model::{ExactSum, ModelError};
 use corpuscle_scene::{Edge, Flood as Settings, Side};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
@@ -211,20 +212,19 @@ impl Boundaries {
 
     /// Mean level along the wet faces of a rule, m.
     fn mean_level(&self, solver: &Solver, rule: u16) -> Option<f64> {
-        let wet = faces_of(&self.of_faces, solver, rule).filter(|(_, cell, _)| solver.water[*cell].depth > 0.0);
-        let (sum, length) = wet.fold((0.0, 0.0), |(sum, total), (_, cell, length)| {
-            (sum + length * solver.water[cell].level, total + length)
-        });
+        let own = own_faces_of(&self.of_faces, solver, rule);
+        let wet = own.filter(|(_, cell, _)| solver.water[*cell].depth > 0.0);
+        let [sum, length] = sums(solver, wet.map(|(_, cell, length)| [length * solver.water[cell].level, length]));
         (length > 0.0).then(|| sum / length)
     }
 
     /// Level of the water along the faces of a rule, m; films count as little as they are deep.
     fn level_of_depth(&self, solver: &Solver, rule: u16) -> f64 {
-        let weighted = faces_of(&self.of_faces, solver, rule).map(|(_, cell, length)| {
+        let weighted = own_faces_of(&self.of_faces, solver, rule).map(|(_, cell, length)| {
             let water = &solver.water[cell];
-            (length * water.depth, length * water.depth * water.level)
+            [length * water.depth, length * water.depth * water.level]
         });
-        let (weight, sum) = weighted.fold((0.0, 0.0), |(weight, sum), (w, s)| (weight + w, sum + s));
+        let [weight, sum] = sums(solver, weighted);
         if weight > 0.0 { sum / weight } else { f64::NEG_INFINITY }
     }
 
@@ -240,7 +240,8 @@ impl Boundaries {
         let conveyance = |cell: usize| depth(cell).powf(5.0 / 3.0);
         let Self { of_faces, now, .. } = self;
         let faces = || faces_of(of_faces, solver, rule);
-        let total: f64 = faces().map(|(_, cell, length)| length * conveyance(cell)).sum();
+        let own = own_faces_of(of_faces, solver, rule).map(|(_, cell, length)| length * conveyance(cell));
+        let total = total_of(solver.domain.as_ref(), own.collect());
         let (lowest, lowest_length) = lowest_of(of_faces, solver, rule);
         for (border, cell, _) in faces() {
             let dry = if wets(solver.mesh.bed[cell], lowest) { 1.0 / lowest_length } else { 0.0 };
@@ -282,9 +283,22 @@ impl Boundaries {
 
 /// The lowest bed before the border faces of a rule, m, and the length of those before which it lies, m.
 pub(super) fn lowest_of(of_faces: &[Option<u16>], solver: &Solver, rule: u16) -> (f64, f64) {
-    let faces = || faces_of(of_faces, solver, rule).map(|(_, cell, length)| (solver.mesh.bed[cell], length));
+    let faces = || own_faces_of(of_faces, solver, rule).map(|(_, cell, length)| (solver.mesh.bed[cell], length));
     let lowest = faces().map(|(bed, _)| bed).fold(f64::INFINITY, f64::min);
-    (lowest, faces().filter(|(bed, _)| wets(*bed, lowest)).map(|(_, length)| length).sum())
+    let lowest = solver.domain.as_ref().map_or(lowest, |domain| domain.least(lowest));
+    let lengths = faces().filter(|(bed, _)| wets(*bed, lowest)).map(|(_, length)| length).collect();
+    (lowest, total_of(solver.domain.as_ref(), lengths))
+}
+
+/// Sums of pairs over all processes.
+fn sums(solver: &Solver, pairs: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    let [mut first, mut second] = [ExactSum::default(); 2];
+    for pair in pairs {
+        first.add(pair[0]);
+        second.add(pair[1]);
+    }
+    total(solver.domain.as_ref(), &mut [], &mut [&mut first, &mut second]);
+    [first.value(), second.value()]
 }
 
 /// Whether a bed lies as low as the lowest: there water comes in where all is dry.
@@ -303,6 +317,15 @@ pub(super) fn faces_of<'a>(
         let face = &solver.mesh.faces[solver.borders[border] as usize];
         (border, face.cells[0] as usize, face.normal[0].hypot(face.normal[1]))
     })
+}
+
+/// Those of them whose cells are computed by this process.
+fn own_faces_of<'a>(
+    of_faces: &'a [Option<u16>],
+    solver: &'a Solver,
+    rule: u16,
+) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
+    faces_of(of_faces, solver, rule).filter(|(_, cell, _)| solver.owns(*cell))
 }
 
 /// The water of an incoming simple wave over the bed of a cell, and the ground under its face: what is not given of level and velocity inwards follows from u = 2 (c - c0).

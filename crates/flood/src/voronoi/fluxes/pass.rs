@@ -1,9 +1,11 @@
 //! The pass over faces: eight at a time between cells, one at a time on borders.
 
 use super::super::boundaries::{Now, through};
+use super::super::domain::Domain;
 use super::super::local::Local;
 use super::super::mesh::{Face, Mesh, SOLID};
 use super::super::reconstruction::{Faces, at_side, at_wall, differences};
+use super::super::sums::{ROUNDERS, ReproducibleSum};
 use super::super::water::{DEPTH, LEVEL, Slopes, Water};
 use super::{Crossings, Flux, between};
 use corpuscle_simd::{LANES, Lanes, LanesExt, Select, Simd, SimdBase, SimdFloat, SimdFrom, transposed};
@@ -23,6 +25,8 @@ pub(crate) struct Inputs<'a> {
     pub outflow_time: f64,
     /// Where cells take steps of their own: `outflow_time` is for the shortest.
     pub local: Option<&'a Local>,
+    /// The part of this process where several share the cells: momentum of the ground is counted by the process of a face's first cell.
+    pub domain: Option<&'a Domain>,
 }
 
 impl Inputs<'_> {
@@ -64,7 +68,7 @@ impl Inputs<'_> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct OnFaces {
     /// Force of the ground on the water over density, m4/s2.
-    pub by_ground: [f64; 2],
+    pub by_ground: [ReproducibleSum<f64>; 2],
     /// Whether a face takes so much that its cell may not have the water for all its faces.
     pub may_drain: bool,
 }
@@ -78,7 +82,7 @@ pub(crate) fn fluxes_of_chunk<S: Simd>(
     first: usize,
     fluxes: &mut [Flux],
 ) -> OnFaces {
-    let mut by_ground = [Lanes::splat(simd, 0.0); 2];
+    let mut by_ground = [ReproducibleSum::of(Lanes::splat(simd, 0.0)); 2];
     let mut may_drain = false;
     let faces = &inputs.mesh.faces[first..first + fluxes.len()];
     for (block, (fluxes, faces)) in fluxes.chunks_mut(LANES).zip(faces.chunks(LANES)).enumerate() {
@@ -94,7 +98,7 @@ pub(crate) fn fluxes_of_chunk<S: Simd>(
             may_drain |= border_flux(simd, inputs, face, border, flux);
         }
     }
-    OnFaces { by_ground: by_ground.map(LanesExt::sum), may_drain }
+    OnFaces { by_ground: by_ground.map(|sum| sum.map(LanesExt::sum)), may_drain }
 }
 
 /// Fluxes through the faces of a block that are between cells; nothing for those on borders. Whether one may take more than there is.
@@ -105,7 +109,7 @@ fn block_between<S: Simd>(
     first: usize,
     faces: &[Face],
     fluxes: &mut [Flux],
-    by_ground: &mut [Lanes<S>; 2],
+    by_ground: &mut [ReproducibleSum<Lanes<S>>; 2],
 ) -> bool {
     let mut block = Block::default();
     if !block.gather(inputs, first, faces) {
@@ -130,8 +134,10 @@ fn block_between<S: Simd>(
             )
         }
     };
-    by_ground[0] += pushed * length * faces.normal[0];
-    by_ground[1] += pushed * length * faces.normal[1];
+    let pushed = pushed * length * limits.counts;
+    let rounders = ROUNDERS.map(|rounder| Lanes::splat(simd, rounder));
+    by_ground[0].add(pushed * faces.normal[0], &rounders);
+    by_ground[1].add(pushed * faces.normal[1], &rounders);
     store(simd, &found, limits.kept, faces.normal, length, fluxes);
     let out = found.volume * length;
     (out * times[0] - limits.volume[0]).max(-(out * times[1]) - limits.volume[1]).largest() > 0.0
@@ -143,6 +149,8 @@ struct Limits<S: Simd> {
     kept: [Lanes<S>; 2],
     /// Water in each cell, m3.
     volume: [Lanes<S>; 2],
+    /// 1 where the ground's thrust on the water on both sides is counted, 0 where another process counts it.
+    counts: Lanes<S>,
 }
 
 /// Puts what eight faces do into their places.
@@ -210,8 +218,9 @@ impl Block {
             self.differences[k] = [depth, level, depth_back, level_back, x, y, kept_here, kept_there];
             let ([bx, by], [ox, oy]) = (face.between, face.offset);
             let volume = [here.depth * mesh.area[i], there.depth * mesh.area[j]];
+            let counts = if inputs.domain.is_none_or(|domain| domain.owns(i)) { 1.0 } else { 0.0 };
             self.places[k] =
-                [f64::from(bx), f64::from(by), f64::from(ox), f64::from(oy), volume[0], volume[1], 0.0, 0.0];
+                [f64::from(bx), f64::from(by), f64::from(ox), f64::from(oy), volume[0], volume[1], counts, 0.0];
         }
         any
     }
@@ -223,7 +232,7 @@ impl Block {
         let [dx0, lx0, ux0, vx0, dy0, ly0, uy0, vy0] = turned(simd, &self.slopes[0]);
         let [dx1, lx1, ux1, vx1, dy1, ly1, uy1, vy1] = turned(simd, &self.slopes[1]);
         let [depth, level, depth_back, level_back, x, y, kept_here, kept_there] = turned(simd, &self.differences);
-        let [bx, by, ox, oy, volume_here, volume_there, ..] = turned(simd, &self.places);
+        let [bx, by, ox, oy, volume_here, volume_there, counts, _] = turned(simd, &self.places);
         let length = (x * x + y * y).sqrt();
         let inverse = Lanes::splat(simd, 1.0) / length.max(f64::MIN_POSITIVE);
         let faces = Faces {
@@ -234,7 +243,7 @@ impl Block {
             between: [bx, by],
             offset: [ox, oy],
         };
-        (faces, Limits { kept: [kept_here, kept_there], volume: [volume_here, volume_there] }, length)
+        (faces, Limits { kept: [kept_here, kept_there], volume: [volume_here, volume_there], counts }, length)
     }
 }
 

@@ -6,6 +6,7 @@
 //! every flux counts for the same time on both sides of its face, and each cell goes on by means of Euler steps, none of which takes more water than there is.
 //! Where nothing nearby has a lower level each repetition would give the same bits, and is left out.
 
+use super::domain::{Domain, total};
 use super::mesh::Mesh;
 use super::water::{Column, Water};
 use rayon::prelude::*;
@@ -21,6 +22,10 @@ pub(crate) const WIDENED: [u32; 2] = [(1 << HIGHEST) + (1 << (HIGHEST - 1)), 1 <
 /// Cells as many neighbours away from a cell of a lower level repeat their stages with it: what happens in both stages of a cell does not depend on
 /// cells farther away. A flux depends on the two cells beside it and on what these can give, so on their other fluxes, and all of these on slopes.
 pub(crate) const REPEATED: usize = 6;
+
+/// How many neighbours away the steps of cells count for what a cell does: its level is lowered by those that need shorter steps, then its pace, and its
+/// water is shown as three neighbours see it.
+pub(crate) const REACH: usize = (1 << HIGHEST) + (1 << (HIGHEST - 1)) + REPEATED + 3;
 
 /// Steps of their own are taken where they save at least this part of the work.
 pub(crate) const LEAST_SAVED: f64 = 0.25;
@@ -80,7 +85,13 @@ impl Local {
 
     /// Finds the steps of the cells, where `steps` gives the longest that each can take, s, infinite where it is dry. The length of the longest step
     /// over the shortest; 1 where all had better take the same.
-    pub fn plan(&mut self, mesh: &Mesh, shortest: f64, steps: impl Fn(usize) -> f64 + Sync) -> f64 {
+    pub fn plan(
+        &mut self,
+        mesh: &Mesh,
+        shortest: f64,
+        steps: impl Fn(usize) -> f64 + Sync,
+        domain: Option<&Domain>,
+    ) -> f64 {
         let cells = mesh.len();
         let Self { level, pace, near, view, spread, .. } = self;
         level.resize(cells, 0);
@@ -101,13 +112,21 @@ impl Local {
         spread.lower(mesh, near, HIGHEST, 1);
         view.clone_from(near);
         spread.lower(mesh, view, HIGHEST, 2);
-        self.highest = self.level.iter().copied().max().unwrap_or(0);
+        let owns = |cell: usize| domain.is_none_or(|domain| domain.owns(cell));
+        let own = self.level.iter().enumerate().filter(|(cell, _)| owns(*cell));
+        let mut highest = [own.map(|(_, level)| *level).max().unwrap_or(0)];
+        domain.iter().for_each(|domain| domain.most(&mut highest));
+        [self.highest] = highest;
         let of_chunk = |(chunk, pace): (usize, &[u8])| {
-            let wet = pace.iter().enumerate().filter(|(k, _)| steps(chunk * CHUNK + k) < f64::INFINITY);
+            let cells = pace.iter().enumerate().map(|(k, pace)| (chunk * CHUNK + k, pace));
+            let wet = cells.filter(|(cell, _)| owns(*cell) && steps(*cell) < f64::INFINITY);
             wet.fold([0, 0], |[count, work], (_, pace)| [count + 1, work + (4_u64 >> pace)])
         };
         let add = |a: [u64; 2], b: [u64; 2]| [a[0] + b[0], a[1] + b[1]];
-        let [count, quarters] = self.pace.par_chunks(CHUNK).enumerate().map(of_chunk).reduce(|| [0; 2], add);
+        let counted = self.pace.par_chunks(CHUNK).enumerate().map(of_chunk).reduce(|| [0; 2], add);
+        let mut counts = counted.map(|count| count as i64);
+        total(domain, &mut counts, &mut []);
+        let [count, quarters] = counts;
         let work = 0.25 * quarters as f64;
         if self.highest == 0 || work > (1.0 - LEAST_SAVED) * count as f64 {
             self.end();
@@ -155,6 +174,11 @@ impl Local {
     /// Whether a cell's own step ends with what it does now.
     pub fn ends(&self, cell: usize) -> bool {
         (self.part + (1 << self.pace[cell])).is_multiple_of(1 << self.level[cell])
+    }
+
+    /// Whether a stage changes the column of a cell.
+    pub fn changes(&self, cell: usize, second: bool) -> bool {
+        self.takes_part(cell) && (!second || self.ends(cell))
     }
 
     /// Whether a cell's own step ended with this part.

@@ -1,5 +1,6 @@
 //! What the water did in each cell, and the maps of it on the terrain's own grid.
 
+use super::domain::Domain;
 use super::mesh::Mesh;
 use super::sampling::Sampler;
 use super::solver::Solver;
@@ -84,6 +85,7 @@ pub(crate) fn maps(
     records: &[Record],
     water: &(impl Fn(usize) -> Water + Sync),
     wet_depth: f64,
+    domain: Option<&Domain>,
 ) -> Vec<Map> {
     let grid = terrain.map_grid();
     let (columns, rows) = (grid.columns, grid.rows);
@@ -99,7 +101,8 @@ pub(crate) fn maps(
             if !mesh.layout.bounds.contains(x, y) {
                 continue;
             }
-            let Some(cell) = mesh.cell_at([x, y]) else { continue };
+            let owns = |cell: &usize| domain.is_none_or(|domain| domain.owns(*cell));
+            let Some(cell) = mesh.cell_at([x, y]).filter(owns) else { continue };
             let record = &records[cell];
             if record.max_depth <= 0.0 {
                 continue;
@@ -122,6 +125,9 @@ pub(crate) fn maps(
             [values[9], values[10]] = record.fastest;
         }
     });
+    if let Some(domain) = domain {
+        domain.gather_pixels(&mut values, |values| values.iter().any(|value| !value.is_nan()));
+    }
     let of = |k: usize| values.iter().map(|values| values[k]).collect();
     let map =
         |(k, [name, title, unit]): (usize, &[&'static str; 3])| Map { name, title, unit, columns, rows, values: of(k) };

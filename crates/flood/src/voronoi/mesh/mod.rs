@@ -290,7 +290,7 @@ impl Mesh {
     }
 
     /// The cell of a point.
-    fn cell_of(&self, point: u64) -> Option<usize> {
+    pub fn cell_of(&self, point: u64) -> Option<usize> {
         if !self.cut_cells.is_empty()
             && let Some(cell) = self.cut_cells.get(&point)
         {

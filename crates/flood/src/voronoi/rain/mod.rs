@@ -3,8 +3,9 @@
 pub(super) mod infiltration;
 
 use self::infiltration::{Law, MM_PER_H, of_class};
+use super::domain::Domain;
 use super::mesh::Mesh;
-use super::patch::Change;
+use super::patch::{Change, Changed};
 use super::solver::Solver;
 use super::water::Column;
 use crate::setup::{load, setup};
@@ -27,6 +28,15 @@ pub(crate) enum Intensity {
     /// mm/h over time.
     Table(Table),
     Function(RainFunction),
+}
+
+/// What rain and ground did in a step.
+pub(crate) struct Exchanged {
+    pub change: Changed,
+    /// Rain on the cells of this process, m3.
+    pub rained: ExactSum,
+    /// What soaked in there, m3.
+    pub infiltrated: ExactSum,
 }
 
 /// Rain and soils of a scene.
@@ -162,7 +172,7 @@ impl Weather {
     }
 
     /// What has soaked in at each cell of the terrain's grid, 0 where no water has come near; none where nothing soaks in.
-    pub fn map(&self, mesh: &Mesh, terrain: &Terrain, soaked: &Soaked) -> Option<Map> {
+    pub fn map(&self, mesh: &Mesh, terrain: &Terrain, soaked: &Soaked, domain: Option<&Domain>) -> Option<Map> {
         self.soaks().then_some(())?;
         let grid = terrain.map_grid();
         let depth = |place: usize| {
@@ -170,9 +180,14 @@ impl Weather {
             if !terrain.is_valid_cell(column, row) {
                 return f32::NAN;
             }
-            mesh.cell_at(grid.centre(column, row)).and_then(|cell| soaked.depth.get(cell)).copied().unwrap_or(0.0)
+            let owns = |cell: &usize| domain.is_none_or(|domain| domain.owns(*cell));
+            let cell = mesh.cell_at(grid.centre(column, row)).filter(owns);
+            cell.and_then(|cell| soaked.depth.get(cell)).copied().unwrap_or(0.0)
         };
-        let values = (0..grid.columns * grid.rows).into_par_iter().map(depth).collect();
+        let mut values: Vec<f32> = (0..grid.columns * grid.rows).into_par_iter().map(depth).collect();
+        if let Some(domain) = domain {
+            domain.gather_pixels(&mut values, |value| *value != 0.0 && !value.is_nan());
+        }
         let (name, title) = ("infiltration", "Infiltration");
         Some(Map { name, title, unit: "m", columns: grid.columns, rows: grid.rows, values })
     }
@@ -182,27 +197,34 @@ impl Weather {
     }
 
     /// Lets it rain from `from` to `until` s, which ends step number `steps`, and the ground drink; what that changed of the water on the ground.
-    pub fn pass(&self, solver: &mut Solver, soaked: &mut Soaked, from: f64, until: f64, steps: u64) -> Change {
+    pub fn pass(&self, solver: &mut Solver, soaked: &mut Soaked, from: f64, until: f64, steps: u64) -> Exchanged {
         let mut change = Change::default();
-        self.rain(solver, soaked, from, until, &mut change);
+        let rained = self.rain(solver, from, until, &mut change);
+        let mut infiltrated = ExactSum::default();
         if self.soaks() && steps.is_multiple_of(STEPS_A_DRAUGHT) {
-            self.drink(solver, soaked, until - soaked.until, &mut change);
+            infiltrated = self.drink(solver, soaked, until - soaked.until, &mut change);
             soaked.until = until;
         }
-        change
+        soaked.rained.add_sum(&rained);
+        soaked.infiltrated.add_sum(&infiltrated);
+        Exchanged { change: change.in_all(solver.domain.as_ref()), rained, infiltrated }
     }
 
-    fn rain(&self, solver: &mut Solver, soaked: &mut Soaked, from: f64, until: f64, change: &mut Change) {
+    /// Lets it rain; the volume, m3.
+    fn rain(&self, solver: &mut Solver, from: f64, until: f64, change: &mut Change) -> ExactSum {
+        let mut fallen = ExactSum::default();
         let even = match &self.intensity {
-            Intensity::None => return,
+            Intensity::None => return fallen,
             Intensity::Table(table) => MM_PER_H * table.integral(from, until),
             Intensity::Function(_) => 1.0,
         };
         if even == 0.0 {
-            return;
+            return fallen;
         }
-        let mut fallen = ExactSum::default();
         for cell in 0..solver.mesh.len() {
+            if !solver.owns(cell) {
+                continue;
+            }
             let factor = self.factors.get(cell).map_or(1.0, |factor| f64::from(*factor));
             let depth = match &self.intensity {
                 Intensity::Function(rain) => {
@@ -217,14 +239,16 @@ impl Weather {
                 change.apply(solver, cell, Column { volume, momentum: [0.0; 2] });
             }
         }
-        soaked.rained.add(fallen.value());
+        fallen
     }
 
-    fn drink(&self, solver: &mut Solver, soaked: &mut Soaked, step: f64, change: &mut Change) {
+    /// Lets the ground drink; the volume, m3.
+    fn drink(&self, solver: &mut Solver, soaked: &mut Soaked, step: f64, change: &mut Change) -> ExactSum {
         let mut gone = ExactSum::default();
         for cell in 0..solver.mesh.len() {
             let Column { volume, momentum } = solver.columns[cell];
-            let Some(law) = self.laws[usize::from(self.law[cell])].filter(|_| volume > 0.0) else { continue };
+            let takes = volume > 0.0 && solver.owns(cell);
+            let Some(law) = self.laws[usize::from(self.law[cell])].filter(|_| takes) else { continue };
             let area = solver.mesh.area[cell];
             let demand = area * law.demand(f64::from(soaked.depth[cell]), step);
             let share = (demand / volume).min(1.0);
@@ -233,6 +257,6 @@ impl Weather {
             let taken = Column { volume: -share * volume, momentum: momentum.map(|momentum| -share * momentum) };
             change.apply(solver, cell, taken);
         }
-        soaked.infiltrated.add(gone.value());
+        gone
     }
 }

@@ -7,9 +7,11 @@ pub(super) mod upload;
 
 pub(super) use kinds::{Flows, Structures};
 
+use super::domain::Domain;
 use super::mesh::Mesh;
-use super::patch::{Change, Patch};
+use super::patch::{Changed, Patch};
 use super::solver::Solver;
+use crate::zone::Zone;
 
 /// The cells that each structure takes from and gives to.
 #[derive(Default)]
@@ -28,11 +30,12 @@ impl Patches {
         zones.flat_map(|zone| Patch::tiles(zone, mesh)).collect()
     }
 
-    pub fn of(structures: &Structures, mesh: &Mesh) -> Self {
+    pub fn of(structures: &Structures, mesh: &Mesh, domain: Option<&Domain>) -> Self {
+        let of = |zone: &Zone| Patch::of(zone, mesh, domain);
         Self {
-            outflows: structures.outflows.iter().map(|outflow| Patch::of(&outflow.zone, mesh)).collect(),
-            held: structures.held.iter().map(|held| Patch::of(&held.zone, mesh)).collect(),
-            links: structures.links.iter().map(|link| [0, 1].map(|end| Patch::of(&link.ends[end], mesh))).collect(),
+            outflows: structures.outflows.iter().map(|outflow| of(&outflow.zone)).collect(),
+            held: structures.held.iter().map(|held| of(&held.zone)).collect(),
+            links: structures.links.iter().map(|link| [0, 1].map(|end| of(&link.ends[end]))).collect(),
         }
     }
 
@@ -44,7 +47,7 @@ impl Patches {
         solver: &mut Solver,
         time: f64,
         step: f64,
-        book: &mut impl FnMut(Change),
+        book: &mut impl FnMut(Changed),
     ) {
         let levels = |patch: &Patch, solver: &Solver| patch.level(solver);
         for ((outflow, patch), discharge) in structures.outflows.iter().zip(&self.outflows).zip(&mut flows.outflows) {
@@ -64,7 +67,7 @@ impl Patches {
             // It comes out at rest.
             let given = ends[to].add(solver, -taken.volume, [0.0; 2]);
             *discharge = (given.volume / step).copysign(wanted);
-            book(Change {
+            book(Changed {
                 volume: taken.volume + given.volume,
                 momentum: taken.momentum,
                 energy: taken.energy + given.energy,

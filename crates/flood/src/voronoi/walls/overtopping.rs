@@ -2,7 +2,7 @@
 
 use super::super::structures::hydraulics::over_weir;
 use crate::voronoi::mesh::Mesh;
-use crate::voronoi::patch::Change;
+use crate::voronoi::patch::{Change, Changed};
 use crate::voronoi::solver::Solver;
 use crate::voronoi::water::Column;
 use corpuscle_scene::Weir;
@@ -48,17 +48,26 @@ pub(crate) fn coefficient(gravity: f64) -> f64 {
 /// Lets water flow over crests for `step` s: Poleni's formula for a broad crest, and what the water behind it holds back (Villemonte 1947). All that flows is
 /// found from the water before, so that the order of the crests does not count. It takes its velocity along. The change of all the water: of its momentum only
 /// what thin films cannot carry.
-pub(crate) fn overtop(solver: &mut Solver, step: f64) -> Change {
+pub(crate) fn overtop(solver: &mut Solver, step: f64) -> Changed {
     let mut crests = std::mem::take(&mut solver.crests);
     crests.iter_mut().for_each(|crest| crest.flow = crest.flow(solver, step));
     let mut change = Change::default();
     for OverCrest { cells, flow: (from, given), .. } in crests.iter().filter(|crest| crest.flow.1.volume > 0.0) {
         let taken = Column { volume: -given.volume, momentum: given.momentum.map(|momentum| -momentum) };
-        change.apply(solver, cells[*from] as usize, taken);
-        change.apply(solver, cells[1 - from] as usize, *given);
+        for (side, added) in [(*from, taken), (1 - from, *given)] {
+            let cell = cells[side] as usize;
+            if solver.owns(cell) {
+                change.apply(solver, cell, added);
+            }
+        }
     }
     solver.crests = crests;
-    change
+    // Walls that water flows over may lie in other processes.
+    if solver.crests.is_empty() && solver.domain.is_none() {
+        Changed::default()
+    } else {
+        change.in_all(solver.domain.as_ref())
+    }
 }
 
 impl OverCrest {

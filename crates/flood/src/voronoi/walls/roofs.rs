@@ -2,8 +2,10 @@
 
 use crate::obstacles::Outline;
 use crate::setup::is_inside;
+use crate::voronoi::domain::{Domain, total};
 use crate::voronoi::mesh::Mesh;
 use crate::voronoi::start::Clip;
+use corpuscle_model::ExactSum;
 use corpuscle_terrain::Bounds;
 
 /// Area of each of `count` obstacles within a rectangle, m2.
@@ -25,16 +27,20 @@ pub(crate) fn areas(outlines: &[Outline], count: usize, bounds: Bounds) -> Vec<f
 }
 
 /// The area of roofs, by obstacle, that each cell gets the rain of, m2: shared out by the length of its faces to the obstacle. Empty where there are no roofs.
-pub(crate) fn collect(mesh: &Mesh, roofs: &[f64]) -> Vec<f64> {
+pub(crate) fn collect(mesh: &Mesh, roofs: &[f64], domain: Option<&Domain>) -> Vec<f64> {
     if roofs.iter().all(|area| *area <= 0.0) {
         return Vec::new();
     }
-    let mut round = vec![0.0; roofs.len()];
+    let mut round = vec![ExactSum::default(); roofs.len()];
     let length = |face: u32| {
         let [x, y] = mesh.faces[face as usize].normal;
         x.hypot(y)
     };
-    mesh.obstacle_faces.iter().for_each(|&(face, obstacle)| round[obstacle as usize] += length(face));
+    let owns = |face: u32| domain.is_none_or(|domain| domain.owns(mesh.faces[face as usize].cells[0] as usize));
+    let own = mesh.obstacle_faces.iter().filter(|(face, _)| owns(*face));
+    own.for_each(|&(face, obstacle)| round[obstacle as usize].add(length(face)));
+    total(domain, &mut [], &mut round.iter_mut().collect::<Vec<_>>());
+    let round: Vec<f64> = round.iter().map(ExactSum::value).collect();
     let mut collected = vec![0.0; mesh.len()];
     for &(face, obstacle) in &mesh.obstacle_faces {
         let obstacle = obstacle as usize;

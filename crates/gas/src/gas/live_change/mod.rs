@@ -7,7 +7,7 @@ mod thermostat;
 use super::{Due, Gas};
 use crate::method::Mover;
 use crate::world::{Facing, Wall};
-use corpuscle_model::{ExactSum, ModelError};
+use corpuscle_model::{CompensatedSum, ModelError};
 use piston::Grip;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
@@ -84,10 +84,10 @@ impl LiveChange {
 /// Energy and momentum that live changes added and removed, and the values that they hold.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct LiveTally {
-    pub gained: ExactSum,
-    pub lost: ExactSum,
+    pub gained: CompensatedSum,
+    pub lost: CompensatedSum,
     /// Sum of the components, with what the balls were given when all velocities were reversed.
-    pub momentum: ExactSum,
+    pub momentum: CompensatedSum,
     /// Balls put in and taken out.
     pub added: u64,
     pub removed: u64,
@@ -191,7 +191,7 @@ impl<const D: usize> Gas<D> {
         self.mover.begin_window();
         let times = factor.sqrt();
         let world = self.mover.world_mut();
-        let (mut energy, mut momentum) = (ExactSum::default(), ExactSum::default());
+        let (mut energy, mut momentum) = (CompensatedSum::default(), CompensatedSum::default());
         for ball in 0..world.balls.len() {
             let mass = world.mass(ball);
             let height = world.balls[ball].position[1];

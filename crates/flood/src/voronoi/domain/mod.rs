@@ -1,0 +1,381 @@
+//! The part of a flood that one of several processes computes, and what it exchanges with the others.
+//!
+//! Each tile belongs to a process ([`curve`]). A process has the cells of its own tiles and of the tiles round them, the ghost cells. It
+//! computes the columns of its own cells; those of ghost cells near them come from their processes after each stage of a step
+//! ([`Domain::exchange`]). Cells stand in the order in which all processes together made the tiles, so that faces have the same direction
+//! everywhere, and all sums over cells are exact: results have the same bits for any number of processes.
+//!
+//! `commands.rs` has the commands of the first process to the others, `tiles.rs` gathers and distributes the state by tiles.
+
+mod commands;
+mod curve;
+mod tiles;
+
+pub(super) use commands::Command;
+pub(super) use tiles::Counts;
+
+use super::local;
+use super::mesh::{Layout, Mesh};
+use super::solver::Solver;
+use super::water::{Column, Water};
+use corpuscle_model::{ExactSum, ModelError};
+use corpuscle_processes::{Link, Processes};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::sync::Arc;
+
+/// How many cells away from its own a process needs the water: the flux between an own cell and its neighbour depends on whether the neighbour can
+/// give as much through all of its faces, these on the slopes of the neighbours' neighbours, and these on the water beside them.
+const LAYERS: usize = 3;
+
+/// The same where cells take steps of their own, which follow from the water as far away: see [`Local::plan`].
+const LAYERS_OF_LOCAL_STEPS: usize = LAYERS + local::REACH;
+
+/// Numbers that are exchanged for a cell.
+const NUMBERS: usize = 3;
+
+/// Cells, by the process that they are sent to or come from.
+type CellsByProcess = Vec<(usize, Vec<u32>)>;
+
+/// The part of a process, and its connections to the others.
+pub(crate) struct Domain {
+    link: Arc<dyn Link>,
+    /// How many cells away from its own the water is needed.
+    layers: usize,
+    /// The process of each tile.
+    owners: Vec<u16>,
+    /// Whether each tile is kept here: own ones, and those round them.
+    keeps: Vec<bool>,
+    /// All tiles that are made, in the order in which they were.
+    pub made: Vec<u32>,
+    is_made: Vec<bool>,
+    /// Whether each cell here is its own.
+    own: Vec<bool>,
+    /// Own cells that other processes need, and ghost cells that are needed here, for each such process.
+    sent: CellsByProcess,
+    received: CellsByProcess,
+    outgoing: Vec<(usize, Vec<f64>)>,
+    incoming: Vec<(usize, Vec<f64>)>,
+    /// Number of wet cells of all processes after the last step.
+    pub wet: usize,
+}
+
+impl Domain {
+    /// The part of a process in a layout without cells; none where it is alone.
+    pub fn new(processes: &Processes, layout: &Layout, has_local_steps: bool) -> Option<Self> {
+        let link = processes.link()?;
+        let tiles = layout.tiles[0] * layout.tiles[1];
+        let mut domain = Self {
+            link: Arc::clone(link),
+            layers: if has_local_steps { LAYERS_OF_LOCAL_STEPS } else { LAYERS },
+            owners: Vec::new(),
+            keeps: Vec::new(),
+            made: Vec::new(),
+            is_made: vec![false; tiles],
+            own: Vec::new(),
+            sent: Vec::new(),
+            received: Vec::new(),
+            outgoing: Vec::new(),
+            incoming: Vec::new(),
+            wet: 0,
+        };
+        domain.assign(layout, curve::owners(layout.tiles, &vec![1.0; tiles], link.count()));
+        Some(domain)
+    }
+
+    /// Gives tiles to processes. There must be no cells yet.
+    pub fn assign(&mut self, layout: &Layout, owners: Vec<u16>) {
+        self.owners = owners;
+        self.keeps = kept_by(self.link.rank(), &self.owners, layout);
+    }
+
+    /// Forgets all cells and tiles.
+    pub fn clear(&mut self) {
+        self.made.clear();
+        self.is_made.fill(false);
+        self.own.clear();
+        [&mut self.sent, &mut self.received].into_iter().for_each(Vec::clear);
+        [&mut self.outgoing, &mut self.incoming].into_iter().for_each(Vec::clear);
+    }
+
+    pub fn is_first(&self) -> bool {
+        self.link.rank() == 0
+    }
+
+    /// Whether a cell is its own. Cells that were added just now are not.
+    #[inline]
+    pub fn owns(&self, cell: usize) -> bool {
+        self.own.get(cell).copied().unwrap_or(false)
+    }
+
+    pub fn owns_tile(&self, tile: usize) -> bool {
+        usize::from(self.owners[tile]) == self.link.rank()
+    }
+
+    /// Whether any process has made a tile.
+    pub fn is_made(&self, tile: usize) -> bool {
+        self.is_made[tile]
+    }
+
+    /// Takes tiles for made; returns those that are kept here.
+    pub fn add_tiles(&mut self, tiles: &[usize]) -> Vec<usize> {
+        for tile in tiles {
+            self.made.push(*tile as u32);
+            self.is_made[*tile] = true;
+        }
+        tiles.iter().copied().filter(|tile| self.keeps[*tile]).collect()
+    }
+
+    /// Takes cells that were added to the mesh for its own or others'.
+    pub fn add_cells(&mut self, mesh: &Mesh) {
+        for cell in self.own.len()..mesh.len() {
+            self.own.push(self.owns_tile(mesh.layout.place(mesh.point[cell]).0));
+        }
+    }
+
+    /// The elements of all processes' lists, in order, each once.
+    pub fn union(&self, own: &[usize]) -> Vec<usize> {
+        let mut all: Vec<usize> = self.gather_all::<Vec<usize>>(&own).into_iter().flatten().collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// What each process gives, in their order.
+    fn gather_all<T: DeserializeOwned>(&self, own: &impl Serialize) -> Vec<T> {
+        let all = self.link.all_gather(&to_bytes(own));
+        all.iter().filter_map(|bytes| postcard::from_bytes(bytes).ok()).collect()
+    }
+
+    /// What each process gives, at the first; nothing at others.
+    pub fn gather<T: DeserializeOwned>(&self, own: &impl Serialize) -> Vec<T> {
+        let own = to_bytes(own);
+        if !self.is_first() {
+            self.link.pass(&[(0, own)], &[]);
+            return Vec::new();
+        }
+        let others: Vec<usize> = (1..self.link.count()).collect();
+        let all = std::iter::once(own).chain(self.link.pass(&[], &others));
+        all.filter_map(|bytes| postcard::from_bytes(&bytes).ok()).collect()
+    }
+
+    /// Brings the values of a map that processes have found to the first.
+    pub fn gather_pixels<T: Copy + Serialize + DeserializeOwned>(
+        &self,
+        values: &mut [T],
+        is_found: impl Fn(&T) -> bool,
+    ) {
+        let own: Vec<(usize, T)> = values.iter().copied().enumerate().filter(|(_, value)| is_found(value)).collect();
+        for (pixel, value) in self.gather::<Vec<(usize, T)>>(&own).into_iter().flatten() {
+            values[pixel] = value;
+        }
+    }
+
+    /// Sends something to some processes, and receives what others send, with the process it comes from.
+    fn swap<T: DeserializeOwned>(&self, outgoing: Vec<(usize, impl Serialize)>) -> Vec<(usize, T)> {
+        let to: Vec<usize> = outgoing.iter().map(|(to, _)| *to).collect();
+        let all: Vec<Vec<usize>> = self.gather_all(&to);
+        let senders = all.iter().enumerate().filter(|(_, to)| to.contains(&self.link.rank()));
+        let from: Vec<usize> = senders.map(|(from, _)| from).collect();
+        let outgoing: Vec<_> = outgoing.into_iter().map(|(to, what)| (to, to_bytes(&what))).collect();
+        let received = self.link.pass(&outgoing, &from);
+        from.into_iter()
+            .zip(received)
+            .filter_map(|(from, bytes)| Some((from, postcard::from_bytes(&bytes).ok()?)))
+            .collect()
+    }
+
+    /// Finds which cells of others are needed here, and which of here elsewhere.
+    pub fn connect(&mut self, solver: &Solver) {
+        let mesh = &solver.mesh;
+        let mut wanted: CellsByProcess = Vec::new();
+        for cell in self.ghosts(solver) {
+            let owner = usize::from(self.owners[mesh.layout.place(mesh.point[cell as usize]).0]);
+            match wanted.iter_mut().find(|(process, _)| *process == owner) {
+                Some((_, cells)) => cells.push(cell),
+                None => wanted.push((owner, vec![cell])),
+            }
+        }
+        wanted.sort_unstable_by_key(|(process, _)| *process);
+        let points = |cells: &[u32]| cells.iter().map(|cell| mesh.point[*cell as usize]).collect::<Vec<u64>>();
+        let asked = self.swap(wanted.iter().map(|(process, cells)| (*process, points(cells))).collect());
+        let cells =
+            |points: Vec<u64>| points.into_iter().filter_map(|point| mesh.cell_of(point)).map(|cell| cell as u32);
+        self.sent =
+            asked.into_iter().map(|(process, points): (usize, Vec<u64>)| (process, cells(points).collect())).collect();
+        self.received = wanted;
+        let room = |of: &[(usize, Vec<u32>)]| {
+            of.iter().map(|(process, cells)| (*process, vec![0.0; NUMBERS * cells.len()])).collect()
+        };
+        self.outgoing = room(&self.sent);
+        self.incoming = room(&self.received);
+    }
+
+    /// Ghost cells whose water is needed, in order.
+    fn ghosts(&self, solver: &Solver) -> Vec<u32> {
+        let mesh = &solver.mesh;
+        let mut found: Vec<u32> = Vec::new();
+        let mut is_found = vec![false; mesh.len()];
+        let mut add = |cell: usize, found: &mut Vec<u32>| {
+            if !self.owns(cell) && !std::mem::replace(&mut is_found[cell], true) {
+                found.push(cell as u32);
+            }
+        };
+        for cell in (0..mesh.len()).filter(|cell| self.owns(*cell)) {
+            mesh.links_of(cell).iter().filter_map(|link| link.cell()).for_each(|other| add(other, &mut found));
+        }
+        let mut first = 0;
+        for _ in 1..self.layers {
+            let last = found.len();
+            for place in first..last {
+                let cell = found[place] as usize;
+                mesh.links_of(cell).iter().filter_map(|link| link.cell()).for_each(|other| add(other, &mut found));
+            }
+            first = last;
+        }
+        for crest in &solver.crests {
+            if crest.cells.iter().any(|cell| self.owns(*cell as usize)) {
+                crest.cells.iter().for_each(|cell| add(*cell as usize, &mut found));
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
+    /// Ghost cells that are needed here, and the own cells that others need, with their processes.
+    pub fn shared(&self) -> [&CellsByProcess; 2] {
+        [&self.sent, &self.received]
+    }
+
+    /// Sends the columns of own cells to the processes that need them; calls `changed` with those of ghost cells.
+    pub fn exchange(&mut self, columns: &mut [Column], mut changed: impl FnMut(usize, &mut Column, Column)) {
+        for ((_, numbers), (_, cells)) in self.outgoing.iter_mut().zip(&self.sent) {
+            for (numbers, cell) in numbers.chunks_exact_mut(NUMBERS).zip(cells) {
+                let Column { volume, momentum: [p, q] } = columns[*cell as usize];
+                numbers.copy_from_slice(&[volume, p, q]);
+            }
+        }
+        self.link.exchange(&self.outgoing, &mut self.incoming);
+        for ((_, numbers), (_, cells)) in self.incoming.iter().zip(&self.received) {
+            for (numbers, cell) in numbers.chunks_exact(NUMBERS).zip(cells) {
+                let cell = *cell as usize;
+                changed(cell, &mut columns[cell], Column { volume: numbers[0], momentum: [numbers[1], numbers[2]] });
+            }
+        }
+    }
+
+    /// Replaces counts and sums by those over all processes.
+    pub fn total(&self, counts: &mut [i64], sums: &mut [&mut ExactSum]) {
+        let mut all = counts.to_vec();
+        sums.iter().for_each(|sum| all.extend(sum.addends()));
+        self.link.total(&mut all);
+        let (of_counts, of_sums) = all.split_at(counts.len());
+        counts.copy_from_slice(of_counts);
+        for (sum, addends) in sums.iter_mut().zip(of_sums.as_chunks().0) {
+            **sum = ExactSum::of_addends(addends);
+        }
+    }
+
+    /// Replaces each level by the highest of all processes.
+    pub fn most(&self, levels: &mut [u8]) {
+        let mut least: Vec<f64> = levels.iter().map(|level| -f64::from(*level)).collect();
+        self.link.least(&mut least);
+        levels.iter_mut().zip(least).for_each(|(level, least)| *level = -least as u8);
+    }
+
+    /// The least of a value over all processes.
+    pub fn least(&self, value: f64) -> f64 {
+        let mut least = [value];
+        self.link.least(&mut least);
+        least[0]
+    }
+}
+
+/// The tiles that a process keeps: its own, and those round them.
+fn kept_by(process: usize, owners: &[u16], layout: &Layout) -> Vec<bool> {
+    let mut keeps = vec![false; owners.len()];
+    for tile in (0..owners.len()).filter(|tile| usize::from(owners[*tile]) == process) {
+        keeps[tile] = true;
+        super::mesh::AROUND.iter().filter_map(|away| layout.beside(tile, *away)).for_each(|tile| keeps[tile] = true);
+    }
+    keeps
+}
+
+fn to_bytes(what: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(what).unwrap_or_default()
+}
+
+/// Replaces counts and sums by those over all processes, if there are several.
+pub(crate) fn total(domain: Option<&Domain>, counts: &mut [i64], sums: &mut [&mut ExactSum]) {
+    if let Some(domain) = domain {
+        domain.total(counts, sums);
+    }
+}
+
+/// The sum of all processes' sums.
+pub(crate) fn total_of(domain: Option<&Domain>, mut sum: ExactSum) -> f64 {
+    total(domain, &mut [], &mut [&mut sum]);
+    sum.value()
+}
+
+/// Whether something holds for any process.
+pub(crate) fn any(domain: Option<&Domain>, holds: bool) -> bool {
+    let mut count = [i64::from(holds)];
+    total(domain, &mut count, &mut []);
+    count[0] > 0
+}
+
+/// What the first of the processes that have something has.
+pub(crate) fn first_of<T: Serialize + DeserializeOwned>(domain: Option<&Domain>, own: Option<T>) -> Option<T> {
+    let Some(domain) = domain else { return own };
+    domain.gather_all::<Option<T>>(&own).into_iter().flatten().next()
+}
+
+/// An error of any process, at all of them.
+pub(crate) fn agreed<T>(domain: Option<&Domain>, result: Result<T, ModelError>) -> Result<T, ModelError> {
+    match domain {
+        Some(domain) => Processes::of(Arc::clone(&domain.link)).agree(result, ModelError::Setup),
+        None => result,
+    }
+}
+
+impl Solver {
+    /// Whether a cell is computed by this process.
+    #[inline]
+    pub fn owns(&self, cell: usize) -> bool {
+        self.domain.as_ref().is_none_or(|domain| domain.owns(cell))
+    }
+
+    /// Takes the columns of ghost cells from their processes, those that a stage has changed: where cells take steps of their own, others may show the water of
+    /// another time.
+    pub fn exchange(&mut self, is_changed: impl Fn(usize) -> bool) {
+        let Some(mut domain) = self.domain.take() else { return };
+        let Self { mesh, columns, water, .. } = self;
+        let mut wet = Vec::new();
+        domain.exchange(columns, |cell, column, theirs| {
+            if !is_changed(cell) {
+                return;
+            }
+            *column = theirs;
+            water[cell] = mesh.water_as_it_is(cell, column);
+            if water[cell].depth > 0.0 {
+                wet.push(cell);
+            }
+        });
+        wet.into_iter().for_each(|cell| self.mark_wet_ghost(cell));
+        self.domain = Some(domain);
+    }
+
+    /// Empties the ghost cells that are too far away to be kept up to date.
+    pub fn empty_far_ghosts(&mut self) {
+        let Some(domain) = &self.domain else { return };
+        let mut is_kept: Vec<bool> = (0..self.mesh.len()).map(|cell| domain.owns(cell)).collect();
+        for cell in domain.received.iter().flat_map(|(_, cells)| cells) {
+            is_kept[*cell as usize] = true;
+        }
+        for cell in (0..is_kept.len()).filter(|cell| !is_kept[*cell]) {
+            self.columns[cell] = Column::default();
+            self.water[cell] = Water { level: self.mesh.level(cell, 0.0), ..Water::default() };
+        }
+    }
+}
