@@ -2,7 +2,7 @@
 
 mod common;
 
-use corpuscle_flood::VoronoiFlood;
+use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::{Frame, Ledger, Map, Model, ModelError};
 use corpuscle_processes::{Processes, threads};
 use corpuscle_scene::FloodScene;
@@ -191,18 +191,17 @@ fn look(flood: &mut VoronoiFlood, times: &[f64]) -> Seen {
     }
 }
 
-/// What the first of some processes, each with some threads, makes of a flood; the others follow.
-fn on<T: Send>(
+/// What the first of some processes, each with some threads, makes of a flood that each opens; the others follow.
+fn on_opened<T: Send>(
     processes: usize,
     threads_each: usize,
-    text: &str,
+    open: impl Fn(&Processes) -> Result<VoronoiFlood, ModelError> + Sync,
     first: impl Fn(Result<VoronoiFlood, ModelError>) -> T + Sync,
 ) -> T {
     let run = |process: Processes| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads_each).build().unwrap();
         pool.install(|| {
-            let (scene, terrain) = scene(text);
-            let opened = VoronoiFlood::new_on(&process, &scene.flood, 1, Path::new("."), terrain);
+            let opened = open(&process);
             if process.is_first() {
                 return Some(first(opened));
             }
@@ -213,10 +212,25 @@ fn on<T: Send>(
         })
     };
     std::thread::scope(|scope| {
+        let run = &run;
         let all: Vec<_> = threads(processes).into_iter().map(|process| scope.spawn(move || run(process))).collect();
         let results: Vec<Option<T>> = all.into_iter().map(|thread| thread.join().unwrap()).collect();
         results.into_iter().flatten().next().unwrap()
     })
+}
+
+/// The same for the flood of a scene.
+fn on<T: Send>(
+    processes: usize,
+    threads_each: usize,
+    text: &str,
+    first: impl Fn(Result<VoronoiFlood, ModelError>) -> T + Sync,
+) -> T {
+    let open = |processes: &Processes| {
+        let (scene, terrain) = scene(text);
+        VoronoiFlood::new_on(processes, &scene.flood, 1, Path::new("."), terrain)
+    };
+    on_opened(processes, threads_each, open, first)
 }
 
 fn alone(text: &str, times: &[f64]) -> Seen {
@@ -308,4 +322,30 @@ fn a_state_is_restored_by_another_number_of_processes() {
 fn what_cannot_be_is_refused() {
     let error = on(3, 1, RIVER, |flood| flood.unwrap().restore(&[1, 2, 3]).unwrap_err().to_string());
     assert!(error.contains("damaged"), "{error}");
+}
+
+/// Water so fast in one position that its square is no number: all end with the same error, and show the water as it was before.
+#[test]
+fn a_breakdown_in_one_process_ends_all() {
+    let broken = |count: usize| {
+        let open = |processes: &Processes| {
+            let (scene, terrain) = scene(JOINED);
+            let water = StartWater {
+                filling: Filling::Depth(Box::new(|_, _| 1.0)),
+                polygon: None,
+                velocity: Box::new(|x, y| [if (x - 80.0).hypot(y - 20.0) < 2.0 { 1e200 } else { 0.0 }, 0.0]),
+            };
+            VoronoiFlood::with_water_on(processes, &scene.flood, 1, Path::new("."), terrain, &[water])
+        };
+        on_opened(count, 1, open, |flood| {
+            let mut flood = flood.unwrap();
+            let error = flood.advance_to(5.0, &AtomicBool::new(false)).unwrap_err().to_string();
+            (error, flood.frame(), flood.gauge_row().len())
+        })
+    };
+    let one = broken(1);
+    assert!(one.0.contains("no longer a number") && !one.1.sets[0].id.is_empty(), "{}", one.0);
+    for count in [2, 4] {
+        assert!(broken(count) == one, "{count} processes");
+    }
 }

@@ -104,8 +104,10 @@ impl VoronoiFlood {
         let mut record = |solver: &Solver, done: f64| maps::record(solver, records, from + done, step, wet_depth);
         let done = self.solver.step(step, &now, &mut book, &mut record);
         let domain = self.solver.domain.as_ref();
-        let sums = std::iter::once(&mut gained).chain(self.pushes.iter_mut().flatten());
-        domain::total(domain, &mut [], &mut sums.collect::<Vec<_>>());
+        if let Some(domain) = domain {
+            let sums = std::iter::once(&mut gained).chain(self.pushes.iter_mut().flatten());
+            domain.total(&mut [], &mut sums.collect::<Vec<_>>());
+        }
         done.slowed.iter().chain(&done.by_ground).for_each(|momentum| gained.add(*momentum));
         // Sums over all processes are booked by the first.
         if domain.is_none_or(Domain::is_first) {
