@@ -297,6 +297,18 @@ fn local_time_steps_have_the_same_bits() {
     compare(LOCAL, &[2.0, 5.0], &[2, 3, 4]);
 }
 
+/// Processes without any cells take part too.
+#[test]
+fn more_processes_than_tiles_have_the_same_bits() {
+    for steps in ["global", "local"] {
+        let text = LOCAL.replace("length_m = 100, width_m = 80", "length_m = 40, width_m = 30");
+        let text =
+            text.replace("x - 50", "x - 20").replace("y - 40", "y - 15").replace("\"local\"", &format!("\"{steps}\""));
+        let text = text.replace("[[40, 30], [60, 35], [55, 50]]", "[[15, 10], [22, 12], [20, 20]]");
+        compare(&text, &[1.0, 2.0], &[3, 5]);
+    }
+}
+
 /// Saved by three, restored by two and by one, which go on to what one process makes of it.
 #[test]
 fn a_state_is_restored_by_another_number_of_processes() {

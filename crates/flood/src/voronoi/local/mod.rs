@@ -62,9 +62,9 @@ pub(crate) struct Local {
 }
 
 impl Local {
-    /// Whether cells take steps of their own.
+    /// Whether cells take steps of their own, those of other processes included.
     pub fn is_on(&self) -> bool {
-        !self.level.is_empty()
+        self.highest > 0
     }
 
     /// The steps where cells take steps of their own; none where all take the same.
