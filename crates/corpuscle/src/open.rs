@@ -27,7 +27,7 @@ impl Simulation {
         Self::open_with(scene, folder, &Processes::alone(), false)
     }
 
-    /// As [`Simulation::open`], with the scene shared out over processes, which all call this. The first then runs it; the others
+    /// As [`Simulation::open`], with the scene distributed over processes, which all call this. The first then runs it; the others
     /// [follow](Simulation::follow).
     ///
     /// # Errors
@@ -36,7 +36,7 @@ impl Simulation {
         Self::open_with(scene, folder, processes, false)
     }
 
-    /// As [`Simulation::open_to_restore`], with the scene shared out over processes.
+    /// As [`Simulation::open_to_restore`], with the scene distributed over processes.
     ///
     /// # Errors
     /// As [`Simulation::open_on`].

@@ -54,7 +54,8 @@ pub fn open(
     Ok(match settings.scheme {
         Scheme::Voronoi => {
             limits::check_cells(settings, &terrain)?;
-            limits::check_depths(settings, &terrain, folder)?;
+            // A file may be missing for one process only.
+            processes.agree(limits::check_depths(settings, &terrain, folder), ModelError::Setup)?;
             Box::new(VoronoiFlood::new_on(processes, settings, seed, folder, terrain)?)
         }
         Scheme::SphSwe => {

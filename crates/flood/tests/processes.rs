@@ -2,7 +2,7 @@
 
 mod common;
 
-use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
+use corpuscle_flood::{Filling, LiveChange, StartWater, VoronoiFlood};
 use corpuscle_model::{Frame, Ledger, Map, Model, ModelError};
 use corpuscle_processes::{Processes, threads};
 use corpuscle_scene::FloodScene;
@@ -138,6 +138,21 @@ finer = [{ polygon = [[40, 30], [60, 35], [55, 50]], within_m = 1, spacing_m = 0
 edges = { west = "wall", east = "open", south = "wall", north = { stage = 1 } }
 "#;
 
+/// Local time steps where the water moves from one process to others, for more steps than lie between two checks of the load.
+const DRAINING: &str = r#"
+run.until_s = 60
+terrain.plane.extent = { length_m = 100, width_m = 80, cell_m = 1 }
+
+[flood]
+spacing_m = 1.5
+time_steps = "local"
+rain.intensity_mm_per_h = 200
+infiltration.horton = { first_mm_per_h = 40, last_mm_per_h = 5, decay_per_h = 3 }
+water = [{ level_m = 1.5, polygon = [[0, 0], [30, 0], [30, 80], [0, 80]] }]
+finer = [{ polygon = [[40, 30], [60, 35], [55, 50]], within_m = 1, spacing_m = 0.4 }]
+edges = { west = "wall", east = "open", south = "wall", north = "wall" }
+"#;
+
 fn steep(x: f64, y: f64) -> f64 {
     2.0 * (0.9 * x).sin() * (0.7 * y).cos() - 0.2 * x
 }
@@ -151,7 +166,7 @@ fn scene(text: &str) -> (FloodScene, Arc<Terrain>) {
     let bounds = Bounds { x_min: 0.0, x_max: 100.0, y_min: 0.0, y_max: 80.0 };
     let terrain = match text {
         THIN => Arc::new(Terrain::gridded(bounds, 0.5, steep)),
-        JOINED | SLOPE | ADAPTIVE | LOCAL => Arc::new(Terrain::gridded(bounds, 0.5, bumps)),
+        JOINED | SLOPE | ADAPTIVE | LOCAL | DRAINING => Arc::new(Terrain::gridded(bounds, 0.5, bumps)),
         _ => common::terrain(&scene),
     };
     (scene, terrain)
@@ -295,6 +310,13 @@ fn cells_that_follow_the_water_have_the_same_bits() {
 #[test]
 fn local_time_steps_have_the_same_bits() {
     compare(LOCAL, &[2.0, 5.0], &[2, 3, 4]);
+    let steps = on(1, 2, DRAINING, |flood| {
+        let mut flood = flood.unwrap();
+        flood.advance_to(12.0, &AtomicBool::new(false)).unwrap();
+        flood.steps()
+    });
+    assert!(steps > 130, "{steps}");
+    compare(DRAINING, &[6.0, 12.0], &[3]);
 }
 
 /// Processes without any cells take part too.
@@ -312,7 +334,7 @@ fn more_processes_than_tiles_have_the_same_bits() {
 /// Saved by three, restored by two and by one, which go on to what one process makes of it.
 #[test]
 fn a_state_is_restored_by_another_number_of_processes() {
-    for (text, times) in [(RIVER, [4.0, 8.0]), (ADAPTIVE, [0.7, 1.5])] {
+    for (text, times) in [(RIVER, [4.0, 8.0]), (ADAPTIVE, [0.7, 1.5]), (DRAINING, [2.0, 4.0])] {
         let one = alone(text, &times);
         let saved = on(3, 1, text, |flood| look(&mut flood.unwrap(), &times[..1]).states.remove(0));
         assert!(saved == one.states[0]);
@@ -329,11 +351,13 @@ fn a_state_is_restored_by_another_number_of_processes() {
     }
 }
 
-/// A damaged state is refused by all, and so is a scheme that one process alone computes.
+/// A damaged state is refused by all, and so are changes while it runs.
 #[test]
 fn what_cannot_be_is_refused() {
     let error = on(3, 1, RIVER, |flood| flood.unwrap().restore(&[1, 2, 3]).unwrap_err().to_string());
     assert!(error.contains("damaged"), "{error}");
+    let error = on(2, 1, RIVER, |flood| flood.unwrap().change(LiveChange::Rain(10.0)).unwrap_err().to_string());
+    assert!(error.contains("several processes"), "{error}");
 }
 
 /// Water so fast in one position that its square is no number: all end with the same error, and show the water as it was before.

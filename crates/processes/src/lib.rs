@@ -20,21 +20,21 @@ pub trait Link: Send + Sync {
     /// The number of processes.
     fn count(&self) -> usize;
 
-    /// Sends messages to processes and receives one from each process named in `incoming`, of the length of its buffer; each knows what
-    /// the others send.
+    /// Sends numbers to processes, and receives some from each process in `incoming`, as many as its buffer has: what is sent must be what the other side
+    /// expects.
     fn exchange(&self, outgoing: &[(usize, Vec<f64>)], incoming: &mut [(usize, Vec<f64>)]);
 
     /// Sends bytes to processes, and receives what each of the processes `from` sends, in this order.
-    fn pass(&self, outgoing: &[(usize, Vec<u8>)], from: &[usize]) -> Vec<Vec<u8>>;
+    fn send_receive(&self, outgoing: &[(usize, &[u8])], from: &[usize]) -> Vec<Vec<u8>>;
 
     /// What each process gives, in the order of their numbers.
     fn all_gather(&self, bytes: &[u8]) -> Vec<Vec<u8>>;
 
-    /// Replaces each value by the least of all processes.
-    fn least(&self, values: &mut [f64]);
+    /// Replaces each value by the minimum over all processes.
+    fn min(&self, values: &mut [f64]);
 
     /// Replaces each value by the sum over all processes, with wrapping.
-    fn total(&self, values: &mut [i64]);
+    fn sum(&self, values: &mut [i64]);
 }
 
 /// The processes of a run, as one of them sees them.
@@ -96,7 +96,7 @@ impl Processes {
         }
     }
 
-    /// Whether this is the process that reads scenes, writes files and speaks to the user.
+    /// Whether this is the process that writes files and reports to the user.
     pub fn is_first(&self) -> bool {
         self.rank() == 0
     }

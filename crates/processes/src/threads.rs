@@ -17,7 +17,7 @@ enum Message {
     Counts(Vec<i64>),
 }
 
-/// As many threads' views of each other: each is to be used by one thread.
+/// Connections between so many threads: one for each of them.
 pub fn threads(count: usize) -> Vec<Processes> {
     let mut from: Vec<Vec<_>> = (0..count).map(|_| Vec::new()).collect();
     let mut to: Vec<Vec<_>> = (0..count).map(|_| Vec::new()).collect();
@@ -34,7 +34,7 @@ pub fn threads(count: usize) -> Vec<Processes> {
 
 impl Thread {
     fn give(&self, to: usize, message: Message) {
-        // One that has ended takes nothing; whoever waits for its answer ends in `take`.
+        // A thread that has ended receives nothing; who waits for its answer panics in `take`.
         let _ = self.to[to].send(message);
     }
 
@@ -43,9 +43,26 @@ impl Thread {
         receiver.recv().unwrap_or_else(|_| panic!("process {from} has ended"))
     }
 
-    fn others(&self) -> impl Iterator<Item = usize> + use<> {
-        let rank = self.rank;
-        (0..self.to.len()).filter(move |other| *other != rank)
+    /// Gives values to all others, and takes theirs.
+    fn swap<T: Clone>(&self, own: &[T], message: fn(Vec<T>) -> Message, expect: fn(Message) -> Vec<T>) -> Vec<Vec<T>> {
+        let others: Vec<usize> = (0..self.to.len()).filter(|other| *other != self.rank).collect();
+        others.iter().for_each(|other| self.give(*other, message(own.to_vec())));
+        others.iter().map(|other| expect(self.take(*other))).collect()
+    }
+}
+
+impl Message {
+    // Another kind than expected: the processes call different functions.
+    fn bytes(self) -> Vec<u8> {
+        if let Self::Bytes(bytes) = self { bytes } else { panic!("bytes were expected from another process") }
+    }
+
+    fn numbers(self) -> Vec<f64> {
+        if let Self::Numbers(numbers) = self { numbers } else { panic!("numbers were expected from another process") }
+    }
+
+    fn counts(self) -> Vec<i64> {
+        if let Self::Counts(counts) = self { counts } else { panic!("counts were expected from another process") }
     }
 }
 
@@ -61,42 +78,30 @@ impl Link for Thread {
     fn exchange(&self, outgoing: &[(usize, Vec<f64>)], incoming: &mut [(usize, Vec<f64>)]) {
         outgoing.iter().for_each(|(to, numbers)| self.give(*to, Message::Numbers(numbers.clone())));
         for (from, numbers) in incoming {
-            if let Message::Numbers(received) = self.take(*from) {
-                numbers.copy_from_slice(&received);
-            }
+            numbers.copy_from_slice(&self.take(*from).numbers());
         }
     }
 
-    fn pass(&self, outgoing: &[(usize, Vec<u8>)], from: &[usize]) -> Vec<Vec<u8>> {
-        outgoing.iter().for_each(|(to, bytes)| self.give(*to, Message::Bytes(bytes.clone())));
-        let received = from.iter().map(|from| match self.take(*from) {
-            Message::Bytes(bytes) => bytes,
-            Message::Numbers(_) | Message::Counts(_) => Vec::new(),
-        });
-        received.collect()
+    fn send_receive(&self, outgoing: &[(usize, &[u8])], from: &[usize]) -> Vec<Vec<u8>> {
+        outgoing.iter().for_each(|(to, bytes)| self.give(*to, Message::Bytes(bytes.to_vec())));
+        from.iter().map(|from| self.take(*from).bytes()).collect()
     }
 
     fn all_gather(&self, bytes: &[u8]) -> Vec<Vec<u8>> {
-        let outgoing: Vec<_> = (0..self.count()).map(|to| (to, bytes.to_vec())).collect();
-        let from: Vec<_> = (0..self.count()).collect();
-        self.pass(&outgoing, &from)
+        let mut all = self.swap(bytes, Message::Bytes, Message::bytes);
+        all.insert(self.rank, bytes.to_vec());
+        all
     }
 
-    fn least(&self, values: &mut [f64]) {
-        self.others().for_each(|other| self.give(other, Message::Numbers(values.to_vec())));
-        for other in self.others() {
-            if let Message::Numbers(theirs) = self.take(other) {
-                values.iter_mut().zip(theirs).for_each(|(value, theirs)| *value = value.min(theirs));
-            }
+    fn min(&self, values: &mut [f64]) {
+        for theirs in self.swap(values, Message::Numbers, Message::numbers) {
+            values.iter_mut().zip(theirs).for_each(|(value, theirs)| *value = value.min(theirs));
         }
     }
 
-    fn total(&self, values: &mut [i64]) {
-        self.others().for_each(|other| self.give(other, Message::Counts(values.to_vec())));
-        for other in self.others() {
-            if let Message::Counts(theirs) = self.take(other) {
-                values.iter_mut().zip(theirs).for_each(|(value, theirs)| *value = value.wrapping_add(theirs));
-            }
+    fn sum(&self, values: &mut [i64]) {
+        for theirs in self.swap(values, Message::Counts, Message::counts) {
+            values.iter_mut().zip(theirs).for_each(|(value, theirs)| *value = value.wrapping_add(theirs));
         }
     }
 }

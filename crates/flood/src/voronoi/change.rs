@@ -42,6 +42,7 @@ impl VoronoiFlood {
     /// [`ModelError::Setup`] where it has nothing of the kind, or the number is out of range: nothing has changed then.
     pub fn change(&mut self, change: LiveChange) -> Result<(), ModelError> {
         change.check()?;
+        self.refuse_on_several()?;
         let done = self.apply(change);
         #[cfg(feature = "gpu")]
         self.mark_stale_on_gpu();
@@ -73,6 +74,7 @@ impl VoronoiFlood {
     /// # Errors
     /// [`ModelError::Setup`] where another gauge has the name, or the position lies outside the terrain.
     pub fn place_gauge(&mut self, name: &str, at: [f64; 2]) -> Result<(), ModelError> {
+        self.refuse_on_several()?;
         if !self.terrain.bounds().contains(at[0], at[1]) {
             let spans = span(&self.terrain);
             return Err(setup(format!("the gauge '{name}' lies outside the terrain, which spans {spans}")));
@@ -83,6 +85,14 @@ impl VoronoiFlood {
             return Err(setup(format!("there is a gauge '{name}' already: give the new one another name")));
         }
         placed.push((name.into(), at));
+        Ok(())
+    }
+
+    /// Refuses changes where several processes compute the flood.
+    fn refuse_on_several(&self) -> Result<(), ModelError> {
+        if self.solver.domain.is_some() {
+            return Err(setup("a flood that several processes compute cannot be changed while it runs"));
+        }
         Ok(())
     }
 

@@ -170,7 +170,7 @@ impl VoronoiFlood {
         &self.settings
     }
 
-    /// The water at a position in model coordinates, at the time shown.
+    /// The water at a position in model coordinates, at the time shown; where several processes share the flood, in the part of this one.
     pub fn sample(&self, x: f64, y: f64) -> Sample {
         self.sampler().at(x, y)
     }
@@ -205,7 +205,7 @@ impl VoronoiFlood {
         })
     }
 
-    /// Kinetic and potential energy of the water, J, the latter above a level, m.
+    /// Kinetic and potential energy of the water, J, the latter above a level, m. Where several processes share the flood all of them call this.
     pub fn energy(&self, level: f64) -> [f64; 2] {
         let mesh = &self.solver.mesh;
         let gravity = self.solver.gravity;
@@ -219,7 +219,7 @@ impl VoronoiFlood {
     }
 
     /// Energy that the water has and a lake at rest at a level, m, would not have, J: kinetic, and what it takes to raise and lower the surface from
-    /// that level in each cell. Not below 0, and small where the water nearly is such a lake: nothing cancels out.
+    /// that level in each cell. Not below 0, and small where the water nearly is such a lake: nothing cancels out. Where several processes share the flood all of them call this.
     pub fn energy_above_lake(&self, level: f64) -> f64 {
         let mesh = &self.solver.mesh;
         let of_cell = |(cell, column): (usize, &Column)| {

@@ -57,12 +57,6 @@ impl Model for VoronoiFlood {
     }
 
     fn cpu_only(&self) -> Option<CpuOnly> {
-        if self.solver.domain.is_some() {
-            return Some(CpuOnly {
-                what: "several processes compute on CPUs only",
-                remedy: "leave `--backend gpu` out",
-            });
-        }
         #[cfg(feature = "gpu")]
         return self.on_cpu_only();
         #[cfg(not(feature = "gpu"))]

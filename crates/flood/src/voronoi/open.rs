@@ -48,11 +48,11 @@ impl VoronoiFlood {
         Self::new_on(&Processes::alone(), settings, seed, folder, terrain)
     }
 
-    /// As [`VoronoiFlood::new`], with the cells shared out over processes: all of them call it. The first then has the flood; the others
+    /// As [`VoronoiFlood::new`], with the cells distributed over processes: all of them call it. The first then has the flood; the others
     /// [follow](VoronoiFlood::follow) it.
     ///
     /// # Errors
-    /// As [`VoronoiFlood::new`]; and where the scene has what a single process computes only.
+    /// As [`VoronoiFlood::new`], of any process.
     pub fn new_on(
         processes: &Processes,
         settings: &Settings,
@@ -79,7 +79,7 @@ impl VoronoiFlood {
         Self::to_restore_on(&Processes::alone(), settings, seed, folder, terrain)
     }
 
-    /// As [`VoronoiFlood::to_restore`], with the cells shared out over processes.
+    /// As [`VoronoiFlood::to_restore`], with the cells distributed over processes.
     ///
     /// # Errors
     /// As [`VoronoiFlood::new_on`].
@@ -90,7 +90,9 @@ impl VoronoiFlood {
         folder: &Path,
         terrain: Arc<Terrain>,
     ) -> Result<Self, ModelError> {
-        Self::empty(processes, settings, seed, folder, terrain)
+        let mut model = Self::empty(processes, settings, seed, folder, terrain)?;
+        model.solver.domain.iter_mut().for_each(Domain::open);
+        Ok(model)
     }
 
     /// As [`VoronoiFlood::new`], with the water at the start given as functions instead of by the scene.
@@ -107,7 +109,7 @@ impl VoronoiFlood {
         Self::with_water_on(&Processes::alone(), settings, seed, folder, terrain, bodies)
     }
 
-    /// As [`VoronoiFlood::with_water`], with the cells shared out over processes.
+    /// As [`VoronoiFlood::with_water`], with the cells distributed over processes.
     ///
     /// # Errors
     /// As [`VoronoiFlood::new_on`].
@@ -135,6 +137,7 @@ impl VoronoiFlood {
         self.warn_of_empty(bodies);
         self.begin(seed);
         self.balance_load(0.0)?;
+        self.solver.domain.iter_mut().for_each(Domain::open);
         Ok(self)
     }
 
@@ -143,6 +146,9 @@ impl VoronoiFlood {
     /// # Errors
     /// [`ModelError::Setup`] where the cells would not fit in memory, or a GPU takes the steps: nothing has changed then.
     pub fn rain(&mut self, rain: RainFunction) -> Result<(), ModelError> {
+        if self.solver.domain.is_some() {
+            return Err(setup("rain by a function falls on one process only"));
+        }
         #[cfg(feature = "gpu")]
         if self.on_gpu.is_some() {
             return Err(setup("rain by a function falls on the CPU only: take no GPU"));
@@ -376,7 +382,9 @@ impl VoronoiFlood {
             domain::agreed(self.solver.domain.as_ref(), extended)?;
             weather.roofs = walls::collect(&self.solver.mesh, &self.roofs, self.solver.domain.as_ref());
         }
-        self.connect();
+        if !tiles.is_empty() {
+            self.connect();
+        }
         Ok(())
     }
 

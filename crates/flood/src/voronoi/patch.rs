@@ -133,14 +133,18 @@ impl Change {
         let column = &mut solver.columns[cell];
         let energy = |column: &Column| column.kinetic() + gravity * mesh.potential(cell, column.volume);
         let before = *column;
-        self.energy.add(-energy(column));
+        let energy_before = energy(column);
         column.volume = (before.volume + added.volume).max(0.0);
         self.volume.add(column.volume - before.volume);
         (0..2).for_each(|axis| column.momentum[axis] += added.momentum[axis]);
-        self.energy.add(energy(column));
+        self.energy.add(energy(column) - energy_before);
         solver.touch(cell);
         let now = solver.columns[cell].momentum;
-        (0..2).for_each(|axis| self.momentum[axis].add(now[axis] - before.momentum[axis]));
+        for (sum, change) in self.momentum.iter_mut().zip([0, 1].map(|axis| now[axis] - before.momentum[axis])) {
+            if change != 0.0 {
+                sum.add(change);
+            }
+        }
     }
 
     /// The change in all processes together.

@@ -86,7 +86,7 @@ struct Found {
     step: f64,
     /// Whether tiles must be made.
     rim: bool,
-    /// Number of wet cells, of all processes.
+    /// Number of wet cells of this process.
     count: u32,
     /// Whether a value is not finite.
     broken: bool,
@@ -203,6 +203,10 @@ impl Solver {
 
     /// Length of the next step, s: where cells may take steps of their own, and that pays, the longest of them.
     pub fn plan(&mut self) -> f64 {
+        if self.local.is_some() {
+            // By the water as it is: a state that is restored has the same steps.
+            self.survey();
+        }
         let shortest = self.time_step();
         let Self { mesh, water, gravity, local, longest, domain, .. } = self;
         let Some(local) = local else { return shortest };
@@ -285,7 +289,7 @@ impl Solver {
         self.renew();
     }
 
-    /// Number of wet cells.
+    /// Number of wet cells of all processes.
     pub fn wet_cells(&self) -> usize {
         self.domain.as_ref().map_or_else(|| self.wet_cells_here(), |domain| domain.wet)
     }

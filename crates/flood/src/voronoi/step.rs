@@ -163,8 +163,12 @@ impl VoronoiFlood {
         let landed: Vec<usize> = (0..falling.len()).filter(|number| self.has_landed(&falling[*number])).collect();
         // All processes have all drops; whose ground it is says which have landed.
         let landed = self.solver.domain.as_ref().map(|domain| domain.union(&landed)).unwrap_or(landed);
-        let landed: Vec<Drop> = landed.iter().rev().map(|number| falling.remove(*number)).collect();
-        let landed: Vec<Drop> = landed.into_iter().rev().collect();
+        let (mut number, mut next) = (0, landed.iter().peekable());
+        let has_landed = |_: &mut Drop| {
+            number += 1;
+            next.next_if_eq(&&(number - 1)).is_some()
+        };
+        let landed: Vec<Drop> = falling.extract_if(.., has_landed).collect();
         self.state.falling = falling;
         for drop in landed {
             self.land(&drop);
@@ -174,13 +178,14 @@ impl VoronoiFlood {
     /// Whether a drop has met water or ground of this process.
     fn has_landed(&self, drop: &Drop) -> bool {
         let [x, y] = inside(self.terrain.bounds(), drop.position);
-        let mesh = &self.solver.mesh;
-        if self.solver.domain.as_ref().is_some_and(|domain| !domain.owns_tile(mesh.layout.nearest([x, y]).0)) {
-            return false;
+        let (mesh, domain) = (&self.solver.mesh, self.solver.domain.as_ref());
+        match mesh.cell_at([x, y]) {
+            Some(cell) => self.solver.owns(cell) && drop.position[2] <= self.solver.water[cell].level,
+            None => {
+                let is_own = domain.is_none_or(|domain| domain.owns_tile(mesh.layout.nearest([x, y]).0));
+                is_own && drop.position[2] <= self.terrain.height(x, y)
+            }
         }
-        let level =
-            mesh.cell_at([x, y]).map_or_else(|| self.terrain.height(x, y), |cell| self.solver.water[cell].level);
-        drop.position[2] <= level
     }
 
     fn land(&mut self, drop: &Drop) {
@@ -211,12 +216,25 @@ impl VoronoiFlood {
         }
     }
 
+    /// Where the first cell lies whose fluxes are no numbers, in the terrain's own coordinates.
+    fn broken_position(&self) -> Option<[f64; 2]> {
+        let mesh = &self.solver.mesh;
+        let position = |cell: usize| {
+            let tile = mesh.layout.place(mesh.point[cell]).0 as u32;
+            let made = self.tiles().iter().position(|made| *made == tile).unwrap_or(usize::MAX);
+            (made, cell, self.terrain.to_own(mesh.centroid[cell]))
+        };
+        // Of the process whose tile was made first.
+        let own = self.solver.broken_cell().map(position);
+        let all = self.solver.domain.as_ref().map_or_else(|| vec![own], |domain| domain.gather_all(&own));
+        all.into_iter().flatten().min_by_key(|(made, cell, _)| (*made, *cell)).map(|(.., position)| position)
+    }
+
     /// The error that says where a value is not finite; goes back to the state before.
     fn breakdown(&mut self, time: f64) -> ModelError {
-        let cell = self.solver.broken_cell();
-        let place = cell.map(|cell| self.terrain.to_own(self.solver.mesh.centroid[cell]));
-        let place = domain::first_of(self.solver.domain.as_ref(), place);
+        let place = self.broken_position();
         self.solver.take_back();
+        self.solver.count();
         let place = place.map_or(String::new(), |[x, y]| format!(" at [{x:.6}, {y:.6}]"));
         ModelError::Breakdown {
             time,

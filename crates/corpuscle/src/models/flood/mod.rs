@@ -48,7 +48,8 @@ impl ModelKind for Kind {
         let new = if is_restored { corpuscle_flood::open_to_restore } else { corpuscle_flood::open };
         let model = new(processes, flood, seed, folder, terrain.clone())?;
         *flood = model.settings().clone();
-        check_inflow(flood, until, &terrain, folder)?;
+        let checked = check_inflow(flood, until, &terrain, folder);
+        processes.agree(checked, |error| ModelError::Setup(error).into())?;
         Ok(Opened { model, terrain: Some(terrain), notes })
     }
 

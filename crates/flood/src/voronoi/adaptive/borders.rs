@@ -1,6 +1,7 @@
 //! What is known of the water beyond border faces, from old faces to new ones.
 
 use super::super::mesh::Mesh;
+use corpuscle_model::ExactSum;
 
 /// Faces lie on one line where they are nearer to it than this part of the longer one.
 const ON_LINE: f64 = 1e-3;
@@ -49,8 +50,9 @@ pub(super) fn carry(old: &[Border], new: &[Border], beyond: &mut [f64]) {
         } else if let [(_, value)] = found[..] {
             value
         } else {
-            let length: f64 = found.iter().map(|(length, _)| length).sum();
-            found.iter().map(|(part, value)| part * value).sum::<f64>() / length
+            let length: ExactSum = found.iter().map(|(length, _)| *length).collect();
+            let weighted: ExactSum = found.iter().map(|(part, value)| part * value).collect();
+            weighted.value() / length.value()
         };
     }
 }

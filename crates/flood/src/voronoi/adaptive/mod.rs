@@ -17,6 +17,7 @@ use super::patch::Patch;
 use super::solver::Solver;
 use super::structures::Patches;
 use super::{VoronoiFlood, rain::Weather};
+use crate::setup::setup;
 use borders::Border;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Adaptive as Settings, TimeSteps};
@@ -63,6 +64,9 @@ impl VoronoiFlood {
     /// # Errors
     /// [`ModelError::Setup`] where the cells would not fit in memory.
     pub fn remake_cells(&mut self, halvings: impl Fn(f64, f64) -> u8) -> Result<(), ModelError> {
+        if self.solver.domain.is_some() {
+            return Err(setup("cells are remade on request by one process only"));
+        }
         let Some(adaptive) = &self.adaptive else { return Ok(()) };
         let mut blocks = self.solver.mesh.layout.blocks().cleared();
         for block in 0..blocks.levels().len() {

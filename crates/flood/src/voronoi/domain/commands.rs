@@ -25,14 +25,14 @@ impl Domain {
     pub fn broadcast(&self, command: Command) {
         if self.is_first() {
             let bytes = to_bytes(&command);
-            let outgoing: Vec<_> = (1..self.count()).map(|process| (process, bytes.clone())).collect();
-            self.link.pass(&outgoing, &[]);
+            let outgoing: Vec<_> = (1..self.count()).map(|process| (process, &bytes[..])).collect();
+            self.link.send_receive(&outgoing, &[]);
         }
     }
 
     /// The next command of the first process.
     fn next_command(&self) -> Command {
-        let received = self.link.pass(&[], &[0]);
+        let received = self.link.send_receive(&[], &[0]);
         received.first().and_then(|bytes| postcard::from_bytes(bytes).ok()).unwrap_or(Command::End)
     }
 
@@ -71,6 +71,8 @@ impl VoronoiFlood {
 
 impl Drop for Domain {
     fn drop(&mut self) {
-        self.broadcast(Command::End);
+        if self.is_open {
+            self.broadcast(Command::End);
+        }
     }
 }

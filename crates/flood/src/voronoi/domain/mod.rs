@@ -31,6 +31,10 @@ const LAYERS: usize = 3;
 /// The same where cells take steps of their own, which follow from the water as far away: see [`Local::plan`].
 const LAYERS_OF_LOCAL_STEPS: usize = LAYERS + local::REACH;
 
+/// Neighbours that surely lie in the same tile or the next: where there are several tiles they are 24 cells wide or more, and neighbours less than two
+/// spacings apart.
+const LAYERS_IN_A_TILE: usize = 12;
+
 /// Numbers that are exchanged for a cell.
 const NUMBERS: usize = 3;
 
@@ -58,6 +62,8 @@ pub(crate) struct Domain {
     incoming: Vec<(usize, Vec<f64>)>,
     /// Number of wet cells of all processes after the last step.
     pub wet: usize,
+    /// Whether the flood is set up, so that the other processes wait for commands.
+    is_open: bool,
 }
 
 impl Domain {
@@ -78,6 +84,7 @@ impl Domain {
             outgoing: Vec::new(),
             incoming: Vec::new(),
             wet: 0,
+            is_open: false,
         };
         domain.assign(layout, curve::owners(layout.tiles, &vec![1.0; tiles], link.count()));
         Some(domain)
@@ -86,7 +93,12 @@ impl Domain {
     /// Gives tiles to processes. There must be no cells yet.
     pub fn assign(&mut self, layout: &Layout, owners: Vec<u16>) {
         self.owners = owners;
-        self.keeps = kept_by(self.link.rank(), &self.owners, layout);
+        self.keeps = kept_by(self.link.rank(), &self.owners, layout, self.rings());
+    }
+
+    /// How many tiles round its own a process keeps.
+    fn rings(&self) -> usize {
+        self.layers.div_ceil(LAYERS_IN_A_TILE)
     }
 
     /// Forgets all cells and tiles.
@@ -96,6 +108,11 @@ impl Domain {
         self.own.clear();
         [&mut self.sent, &mut self.received].into_iter().for_each(Vec::clear);
         [&mut self.outgoing, &mut self.incoming].into_iter().for_each(Vec::clear);
+    }
+
+    /// From here on the other processes wait for commands.
+    pub fn open(&mut self) {
+        self.is_open = true;
     }
 
     pub fn is_first(&self) -> bool {
@@ -142,21 +159,21 @@ impl Domain {
     }
 
     /// What each process gives, in their order.
-    fn gather_all<T: DeserializeOwned>(&self, own: &impl Serialize) -> Vec<T> {
+    pub fn gather_all<T: DeserializeOwned>(&self, own: &impl Serialize) -> Vec<T> {
         let all = self.link.all_gather(&to_bytes(own));
-        all.iter().filter_map(|bytes| postcard::from_bytes(bytes).ok()).collect()
+        all.iter().map(|bytes| from_bytes(bytes)).collect()
     }
 
     /// What each process gives, at the first; nothing at others.
     pub fn gather<T: DeserializeOwned>(&self, own: &impl Serialize) -> Vec<T> {
         let own = to_bytes(own);
         if !self.is_first() {
-            self.link.pass(&[(0, own)], &[]);
+            self.link.send_receive(&[(0, &own)], &[]);
             return Vec::new();
         }
         let others: Vec<usize> = (1..self.link.count()).collect();
-        let all = std::iter::once(own).chain(self.link.pass(&[], &others));
-        all.filter_map(|bytes| postcard::from_bytes(&bytes).ok()).collect()
+        let all = std::iter::once(own).chain(self.link.send_receive(&[], &others));
+        all.map(|bytes| from_bytes(&bytes)).collect()
     }
 
     /// Brings the values of a map that processes have found to the first.
@@ -177,12 +194,10 @@ impl Domain {
         let all: Vec<Vec<usize>> = self.gather_all(&to);
         let senders = all.iter().enumerate().filter(|(_, to)| to.contains(&self.link.rank()));
         let from: Vec<usize> = senders.map(|(from, _)| from).collect();
-        let outgoing: Vec<_> = outgoing.into_iter().map(|(to, what)| (to, to_bytes(&what))).collect();
-        let received = self.link.pass(&outgoing, &from);
-        from.into_iter()
-            .zip(received)
-            .filter_map(|(from, bytes)| Some((from, postcard::from_bytes(&bytes).ok()?)))
-            .collect()
+        let bytes: Vec<_> = outgoing.into_iter().map(|(to, what)| (to, to_bytes(&what))).collect();
+        let outgoing: Vec<_> = bytes.iter().map(|(to, bytes)| (*to, &bytes[..])).collect();
+        let received = self.link.send_receive(&outgoing, &from);
+        from.into_iter().zip(received).map(|(from, bytes)| (from, from_bytes(&bytes))).collect()
     }
 
     /// Finds which cells of others are needed here, and which of here elsewhere.
@@ -242,7 +257,7 @@ impl Domain {
         found
     }
 
-    /// Ghost cells that are needed here, and the own cells that others need, with their processes.
+    /// The own cells that others need, and the ghost cells that are needed here, with their processes.
     pub fn shared(&self) -> [&CellsByProcess; 2] {
         [&self.sent, &self.received]
     }
@@ -268,7 +283,7 @@ impl Domain {
     pub fn total(&self, counts: &mut [i64], sums: &mut [&mut ExactSum]) {
         let mut all = counts.to_vec();
         sums.iter().for_each(|sum| all.extend(sum.addends()));
-        self.link.total(&mut all);
+        self.link.sum(&mut all);
         let (of_counts, of_sums) = all.split_at(counts.len());
         counts.copy_from_slice(of_counts);
         for (sum, addends) in sums.iter_mut().zip(of_sums.as_chunks().0) {
@@ -279,30 +294,38 @@ impl Domain {
     /// Replaces each level by the highest of all processes.
     pub fn most(&self, levels: &mut [u8]) {
         let mut least: Vec<f64> = levels.iter().map(|level| -f64::from(*level)).collect();
-        self.link.least(&mut least);
+        self.link.min(&mut least);
         levels.iter_mut().zip(least).for_each(|(level, least)| *level = -least as u8);
     }
 
     /// The least of a value over all processes.
     pub fn least(&self, value: f64) -> f64 {
         let mut least = [value];
-        self.link.least(&mut least);
+        self.link.min(&mut least);
         least[0]
     }
 }
 
-/// The tiles that a process keeps: its own, and those round them.
-fn kept_by(process: usize, owners: &[u16], layout: &Layout) -> Vec<bool> {
-    let mut keeps = vec![false; owners.len()];
-    for tile in (0..owners.len()).filter(|tile| usize::from(owners[*tile]) == process) {
-        keeps[tile] = true;
-        super::mesh::AROUND.iter().filter_map(|away| layout.beside(tile, *away)).for_each(|tile| keeps[tile] = true);
+/// The tiles that a process keeps: its own, and so many rings round them.
+fn kept_by(process: usize, owners: &[u16], layout: &Layout, rings: usize) -> Vec<bool> {
+    let mut keeps: Vec<bool> = owners.iter().map(|owner| usize::from(*owner) == process).collect();
+    for _ in 0..rings {
+        let inner = keeps.clone();
+        for tile in (0..inner.len()).filter(|tile| inner[*tile]) {
+            let beside = super::mesh::AROUND.iter().filter_map(|away| layout.beside(tile, *away));
+            beside.for_each(|tile| keeps[tile] = true);
+        }
     }
     keeps
 }
 
 fn to_bytes(what: &impl Serialize) -> Vec<u8> {
     postcard::to_stdvec(what).unwrap_or_default()
+}
+
+/// What another process sent: of the type that it sent, or the processes do different things.
+fn from_bytes<T: DeserializeOwned>(bytes: &[u8]) -> T {
+    postcard::from_bytes(bytes).unwrap_or_else(|error| panic!("a message of another process is damaged: {error}"))
 }
 
 /// Replaces counts and sums by those over all processes, if there are several.
@@ -323,12 +346,6 @@ pub(crate) fn any(domain: Option<&Domain>, holds: bool) -> bool {
     let mut count = [i64::from(holds)];
     total(domain, &mut count, &mut []);
     count[0] > 0
-}
-
-/// What the first of the processes that have something has.
-pub(crate) fn first_of<T: Serialize + DeserializeOwned>(domain: Option<&Domain>, own: Option<T>) -> Option<T> {
-    let Some(domain) = domain else { return own };
-    domain.gather_all::<Option<T>>(&own).into_iter().flatten().next()
 }
 
 /// An error of any process, at all of them.

@@ -210,7 +210,7 @@ impl VoronoiFlood {
     fn exchange_tiles(&self, domain: &Domain, owners: &[u16]) -> Vec<TileState> {
         let states = self.own_tile_states(domain);
         let of_process = |process: usize| {
-            let keeps = kept_by(process, owners, &self.solver.mesh.layout);
+            let keeps = kept_by(process, owners, &self.solver.mesh.layout, domain.rings());
             (process, states.iter().filter(|state| keeps[state.tile as usize]).collect::<Vec<_>>())
         };
         let outgoing = (0..domain.count()).map(of_process).filter(|(_, states)| !states.is_empty()).collect();
@@ -236,15 +236,17 @@ impl VoronoiFlood {
         tiles: &[usize],
         states: &[TileState],
     ) -> Result<(), ModelError> {
-        let steps = self.state.time_step;
+        let time_step = self.state.time_step;
         self.remake_tiles(blocks, tiles, Some(owners))?;
         let installed = self.install(states);
         agreed(self.solver.domain.as_ref(), installed)?;
         self.solver.refresh_water();
         self.connect();
-        self.solver.time_step();
+        if self.state.steps > 0 {
+            self.solver.plan();
+        }
         self.solver.count();
-        self.state.time_step = steps;
+        self.state.time_step = time_step;
         Ok(())
     }
 
@@ -299,7 +301,12 @@ impl VoronoiFlood {
             && lengths == [cells; 3]
             && state.beyond.len() == borders
             && (soaked.is_empty() || soaked.len() == cells);
-        if !fits {
+        let tiles = self.solver.mesh.layout.tiles[0] * self.solver.mesh.layout.tiles[1];
+        let mut is_listed = vec![false; tiles];
+        let is_twice = |tile: &u32| std::mem::replace(&mut is_listed[*tile as usize], true);
+        let obstacles = self.settings.obstacle.len();
+        let fits = fits && [&state.impulses, &state.forces].iter().all(|of| of.len() == obstacles);
+        if !fits || state.tiles.iter().any(is_twice) {
             return Err(other());
         }
         if state.overrides != Overrides::default() {

@@ -138,6 +138,12 @@ impl GpuModel for VoronoiFlood {
 impl VoronoiFlood {
     /// The part of the scene that the GPU does not compute, and the remedy; none where it computes all.
     pub(in crate::voronoi) fn on_cpu_only(&self) -> Option<CpuOnly> {
+        if self.solver.domain.is_some() {
+            return Some(CpuOnly {
+                what: "several processes compute on CPUs only",
+                remedy: "leave `--backend gpu` out",
+            });
+        }
         let weather = self.weather.as_ref();
         let falls_by_function = weather.is_some_and(|weather| matches!(weather.intensity, Intensity::Function(_)));
         falls_by_function.then_some(CpuOnly {
