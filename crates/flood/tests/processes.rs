@@ -133,6 +133,7 @@ terrain.plane.extent = { length_m = 100, width_m = 80, cell_m = 1 }
 [flood]
 spacing_m = 1.3
 time_steps = "local"
+rain.intensity_mm_per_h = 200
 water = [{ level_m = "1 + 0.3 * exp(-((x - 50)^2 + (y - 40)^2) / 100)" }]
 finer = [{ polygon = [[40, 30], [60, 35], [55, 50]], within_m = 1, spacing_m = 0.3 }]
 edges = { west = "wall", east = "open", south = "wall", north = { stage = 1 } }
@@ -146,7 +147,6 @@ terrain.plane.extent = { length_m = 100, width_m = 80, cell_m = 1 }
 [flood]
 spacing_m = 1.5
 time_steps = "local"
-rain.intensity_mm_per_h = 200
 infiltration.horton = { first_mm_per_h = 40, last_mm_per_h = 5, decay_per_h = 3 }
 water = [{ level_m = 1.5, polygon = [[0, 0], [30, 0], [30, 80], [0, 80]] }]
 finer = [{ polygon = [[40, 30], [60, 35], [55, 50]], within_m = 1, spacing_m = 0.4 }]
