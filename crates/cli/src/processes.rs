@@ -13,24 +13,38 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+/// What launchers of MPI programs set: Open MPI; MPICH and its kin; Slurm and others by PMIx.
+#[cfg(feature = "mpi")]
+const SET_BY_LAUNCHERS: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"];
+
 /// The processes of the run: those of `mpirun`, or this one alone.
 ///
 /// # Errors
 /// Where `mpirun` has started several of a program without MPI.
+#[cfg(feature = "mpi")]
 pub fn processes() -> anyhow::Result<Processes> {
-    #[cfg(feature = "mpi")]
-    return Ok(corpuscle_mpi::connect());
-    #[cfg(not(feature = "mpi"))]
-    {
-        // As Open MPI, and as MPICH and others set it.
-        let count = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"].iter().find_map(|name| std::env::var(name).ok()?.parse().ok());
-        if count.is_some_and(|count: usize| count > 1) {
-            return Err(refuse(
-                "mpirun has started several processes, and this program is built without MPI; build it with `cargo build --release --features mpi`",
-            ));
-        }
-        Ok(Processes::alone())
+    // MPI is not started for one process: Open MPI would start a program beside it.
+    let is_launched = SET_BY_LAUNCHERS.iter().any(|name| std::env::var_os(name).is_some());
+    Ok(if is_launched { corpuscle_mpi::connect() } else { Processes::alone() })
+}
+
+/// This process alone.
+///
+/// # Errors
+/// Where `mpirun` has started several: each would run the whole scene.
+#[cfg(not(feature = "mpi"))]
+pub fn processes() -> anyhow::Result<Processes> {
+    let above = |name: &str, least: usize| {
+        let number = std::env::var(name).ok().and_then(|number| number.parse().ok());
+        number.is_some_and(|number: usize| number > least)
+    };
+    // As Open MPI and MPICH set the number of processes, and PMIx that of this one.
+    if above("OMPI_COMM_WORLD_SIZE", 1) || above("PMI_SIZE", 1) || above("PMIX_RANK", 0) {
+        return Err(refuse(
+            "mpirun has started several processes, and this program is built without MPI; build it with `cargo build --release --features mpi`",
+        ));
     }
+    Ok(Processes::alone())
 }
 
 /// Opens the same scene as the first process, and takes part in its run. The first has the same errors, reports them, and ends with their status; `mpirun` would

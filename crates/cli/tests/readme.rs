@@ -94,3 +94,16 @@ fn what_the_guide_types_is_understood() {
     type_in(&place, &format!("{} --until 5", copying.trim_end().replace('\n', " && "))).expect_status(0);
     assert!(place.path("my-run/report.html").is_file());
 }
+
+/// Built without MPI, it says so where `mpirun` starts several of it: each would run the whole scene.
+#[cfg(not(feature = "mpi"))]
+#[test]
+fn several_processes_without_mpi_are_refused() {
+    let place = Place::new();
+    place.write("lake.toml", tool::LAKE);
+    for (name, status) in [("OMPI_COMM_WORLD_SIZE", 2), ("PMI_SIZE", 2), ("PMIX_RANK", 2), ("OTHER", 0)] {
+        let mut command = place.command(&["run", "lake.toml", "-o", name]);
+        let ended = Ended::of(command.env(name, "2").output().unwrap()).expect_status(status);
+        assert_eq!(ended.stderr.contains("--features mpi"), status == 2, "{}", ended.stderr);
+    }
+}
