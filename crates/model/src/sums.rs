@@ -190,7 +190,7 @@ impl Serialize for ExactSum {
         let mut sum = *self;
         sum.carry();
         let digits = sum.digits.iter().enumerate().filter(|(_, digit)| **digit != 0);
-        let digits = digits.map(|(place, digit)| (place as u8, *digit)).collect();
+        let digits = digits.map(|(position, digit)| (position as u8, *digit)).collect();
         Written { digits, is_finite: sum.is_finite }.serialize(serializer)
     }
 }
@@ -199,11 +199,11 @@ impl<'de> Deserialize<'de> for ExactSum {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let written = Written::deserialize(deserializer)?;
         let mut sum = Self { is_finite: written.is_finite, ..Self::default() };
-        for (place, digit) in written.digits {
-            let place = usize::from(place);
-            let least = if place == DIGITS - 1 { -1 << DIGIT } else { 0 };
+        for (position, digit) in written.digits {
+            let position = usize::from(position);
+            let least = if position == DIGITS - 1 { -1 << DIGIT } else { 0 };
             let fits = (least..1 << DIGIT).contains(&digit);
-            let of = sum.digits.get_mut(place).filter(|_| fits);
+            let of = sum.digits.get_mut(position).filter(|_| fits);
             *of.ok_or_else(|| serde::de::Error::custom("a digit of a sum is damaged"))? = digit;
         }
         Ok(sum)

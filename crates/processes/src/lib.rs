@@ -1,4 +1,4 @@
-//! Processes that share a run: messages between them, sums and least values over all.
+//! Processes that share a run: messages between them, sums and minima over all.
 //!
 //! All of them call the same functions in the same order. Between machines they are those that `mpirun` started (crate `corpuscle-mpi`); in tests they are threads
 //! of one process.

@@ -8,10 +8,13 @@ pub(super) fn owners([columns, rows]: [usize; 2], work: &[f64], count: usize) ->
     let total: f64 = work.iter().sum();
     let mut owners = vec![0; columns * rows];
     let mut before = 0.0;
-    for (place, tile) in order.iter().enumerate() {
+    for (position, tile) in order.iter().enumerate() {
         // Where there is no work at all, tiles count.
-        let middle =
-            if total > 0.0 { (before + 0.5 * work[*tile]) / total } else { (place as f64 + 0.5) / order.len() as f64 };
+        let middle = if total > 0.0 {
+            (before + 0.5 * work[*tile]) / total
+        } else {
+            (position as f64 + 0.5) / order.len() as f64
+        };
         owners[*tile] = ((middle * count as f64) as usize).min(count - 1) as u16;
         before += work[*tile];
     }
@@ -44,8 +47,8 @@ mod tests {
     fn the_curve_visits_each_square_once_and_goes_from_one_to_the_next() {
         let mut squares: Vec<[u32; 2]> = (0..256).map(|k| [k % 16, k / 16]).collect();
         squares.sort_by_key(|square| along_curve(16, *square));
-        for (place, square) in squares.iter().enumerate() {
-            assert_eq!(along_curve(16, *square), place as u64);
+        for (position, square) in squares.iter().enumerate() {
+            assert_eq!(along_curve(16, *square), position as u64);
         }
         for pair in squares.windows(2) {
             assert_eq!(pair[0][0].abs_diff(pair[1][0]) + pair[0][1].abs_diff(pair[1][1]), 1, "{pair:?}");

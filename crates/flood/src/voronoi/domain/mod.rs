@@ -242,8 +242,8 @@ impl Domain {
         let mut first = 0;
         for _ in 1..self.layers {
             let last = found.len();
-            for place in first..last {
-                let cell = found[place] as usize;
+            for number in first..last {
+                let cell = found[number] as usize;
                 mesh.links_of(cell).iter().filter_map(|link| link.cell()).for_each(|other| add(other, &mut found));
             }
             first = last;

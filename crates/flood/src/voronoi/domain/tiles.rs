@@ -254,25 +254,21 @@ impl VoronoiFlood {
     pub(in super::super) fn gathered_state(&self) -> State {
         let domain = self.solver.domain.as_ref();
         let ([water, momentum, energy], [rained, infiltrated]) = self.booked();
-        let mut state = State {
-            water,
-            momentum,
-            energy,
-            soaked: Soaked { rained, infiltrated, ..self.state.soaked.clone() },
-            tiles: self.tiles().to_vec(),
-            blocks: self.solver.mesh.layout.blocks().finer(),
-            ..self.state.clone()
-        };
+        let mut state = self.state.clone();
+        (state.water, state.momentum, state.energy) = (water, momentum, energy);
+        (state.soaked.rained, state.soaked.infiltrated) = (rained, infiltrated);
+        state.tiles = self.tiles().to_vec();
+        state.blocks = self.solver.mesh.layout.blocks().finer();
         let Some(domain) = domain else {
             state.counts = self.counts();
             state.columns = [self.solver.columns.clone(), self.solver.before().to_vec()];
             return state;
         };
-        let mut place = vec![0; domain.is_made.len()];
-        domain.made.iter().enumerate().for_each(|(k, tile)| place[*tile as usize] = k);
+        let mut order = vec![0; domain.is_made.len()];
+        domain.made.iter().enumerate().for_each(|(k, tile)| order[*tile as usize] = k);
         let mut all: Vec<TileState> =
             domain.gather::<Vec<TileState>>(&self.own_tile_states(domain)).into_iter().flatten().collect();
-        all.sort_unstable_by_key(|of_tile| place[of_tile.tile as usize]);
+        all.sort_unstable_by_key(|of_tile| order[of_tile.tile as usize]);
         let count =
             |of_tile: &TileState| Counts { cells: of_tile.columns.len() as u32, borders: of_tile.beyond.len() as u32 };
         state.counts = all.iter().map(count).collect();
