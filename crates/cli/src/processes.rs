@@ -53,7 +53,7 @@ pub fn follow(processes: &Processes, options: &RunOptions) -> ExitCode {
     // Ctrl-C reaches all processes; the first says when to stop.
     let opened = stop_on_interrupt().and_then(|stop| open(processes, options, &stop));
     if let Ok(mut simulation) = opened {
-        simulation.follow();
+        simulation.follow(processes);
     }
     ExitCode::SUCCESS
 }

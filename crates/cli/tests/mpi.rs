@@ -14,7 +14,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
-use tool::{DEW, Ended, Place};
+use tool::{Ended, Place};
 
 /// Whether there is `mpirun`.
 fn has_mpi() -> bool {
@@ -98,6 +98,11 @@ fn malpasset_has_the_same_bytes() {
     same_on_all(&[place.path("malpasset.toml").to_str().unwrap()], &[(2, 1), (4, 1)]);
 }
 
+#[test]
+fn a_pane_has_the_same_bytes() {
+    same_on_all(&["dew/pane", "--until", "4"], &ALL);
+}
+
 /// A dam break that takes long enough to be interrupted, with checkpoints all the while.
 const LONG: &str = r#"
 run = { until_s = 40, frame_every_s = 8, gauge_every_s = 0.1, checkpoint_every_wall_s = 0.02 }
@@ -107,6 +112,19 @@ spacing_m = 2
 water = [{ level_m = 3, polygon = [[0, 0], [60, 0], [60, 120], [0, 120]] }]
 edges = { west = "wall", south = "wall", north = "wall" }
 gauge = [{ name = "mid", at = [100, 60] }]
+"#;
+
+/// The same of dew.
+const LONG_DEW: &str = r#"
+run = { until_s = 1.5, frame_every_s = 0.3, gauge_every_s = 0.005, checkpoint_every_wall_s = 0.02 }
+[dew]
+size_m = [0.04, 0.03, 0.03]
+spacing_m = 0.0025
+time_factor = 20
+air = { temperature_c = 25.0, relative_humidity = 0.9 }
+drops = { sites_per_m2 = 1e6, smallest_radius_m = 1e-4 }
+faces = { x_max = { inflow = { velocity_m_per_s = [-0.05, 0.0, 0.0] } }, z_min = "open" }
+solid = [{ name = "pane", shape = { box = { size_m = [0.005, 0.03, 0.03] } }, position_m = [0.0025, 0.015, 0.015], temperature_c = 5.0 }]
 "#;
 
 fn rows(gauges: &Path) -> usize {
@@ -126,14 +144,13 @@ fn signal(name: &str, process: u32) {
     assert!(Command::new("kill").args([name, &process.to_string()]).status().unwrap().success());
 }
 
-/// Interrupted by Ctrl-C on three processes, it is resumed on two.
-#[test]
-fn interrupted_on_three_it_is_resumed_on_two() {
+/// Interrupted by Ctrl-C on three processes, a run is resumed on two.
+fn interrupted(scene: &str) {
     if !has_mpi() {
         return;
     }
     let place = Place::new();
-    place.write("scene.toml", LONG);
+    place.write("scene.toml", scene);
     place.run(&["run", "scene.toml", "-o", "whole"]).expect_status(0);
     let arguments = ["run", "scene.toml", "-o", "stopped"];
     let mut child = mpirun(&place, 3, 1, &arguments).stderr(Stdio::piped()).spawn().unwrap();
@@ -147,16 +164,25 @@ fn interrupted_on_three_it_is_resumed_on_two() {
     compare(&found, &expected, "interrupted");
 }
 
+#[test]
+fn a_flood_interrupted_on_three_is_resumed_on_two() {
+    interrupted(LONG);
+}
+
+#[test]
+fn dew_interrupted_on_three_is_resumed_on_two() {
+    interrupted(LONG_DEW);
+}
+
 /// A process, which one is random, is killed at ten random moments; the run ends each time, and goes on from its last checkpoint on another number of
 /// processes.
-#[test]
-fn killed_at_ten_moments_it_gives_the_same_bytes() {
+fn killed_at_ten_moments(scene: &str) {
     if !has_mpi() {
         return;
     }
     let mut random = ChaCha8Rng::seed_from_u64(11);
     let place = Place::new();
-    place.write("scene.toml", LONG);
+    place.write("scene.toml", scene);
     place.run(&["run", "scene.toml", "-o", "whole"]).expect_status(0);
     let gauges = place.path("killed/gauges.csv");
     let mut wanted = 20;
@@ -188,6 +214,16 @@ fn killed_at_ten_moments_it_gives_the_same_bytes() {
     compare(&found, &expected, "killed ten times");
 }
 
+#[test]
+fn a_flood_killed_at_ten_moments_gives_the_same_bytes() {
+    killed_at_ten_moments(LONG);
+}
+
+#[test]
+fn dew_killed_at_ten_moments_gives_the_same_bytes() {
+    killed_at_ten_moments(LONG_DEW);
+}
+
 /// What is wrong is told once, by the first process, and all of them end.
 #[test]
 fn errors_are_told_once() {
@@ -196,13 +232,12 @@ fn errors_are_told_once() {
     }
     let place = Place::new();
     place.write("scene.toml", LONG);
-    place.write("dew.toml", DEW);
     fs::create_dir_all(place.path("full/something")).unwrap();
     let cases: [(&[&str], &str); 5] = [
         (&["run", "missing.toml"], "missing.toml"),
         (&["run", "scene.toml", "--set=flood.scheme=sph-swe"], "sph-swe\" is computed by one process only"),
         (&["run", "scene.toml", "-o", "full"], "full"),
-        (&["run", "dew.toml"], "several processes compute floods"),
+        (&["run", "gas/maxwell"], "several processes compute dew, and floods"),
         (&["run", "scene.toml", "--set=flood.manning={ raster = \"no.tif\" }"], "no.tif"),
     ];
     for (arguments, what) in cases {

@@ -2,13 +2,11 @@
 
 use crate::models::{self, Opened, Opening};
 use crate::{Error, Simulation};
-use corpuscle_flood::as_flood_mut;
 use corpuscle_model::ModelError;
 #[cfg(feature = "gpu")]
 use corpuscle_model::{CpuOnly, Model};
 use corpuscle_processes::Processes;
 use corpuscle_scene::Scene;
-use std::any::Any;
 use std::path::Path;
 
 /// The error of a model that runs on the CPU only, where a GPU was requested.
@@ -44,12 +42,9 @@ impl Simulation {
         Self::open_with(scene, folder, processes, true)
     }
 
-    /// Takes part in the run of the first of several processes until it ends; for a process that is not the first.
-    pub fn follow(&mut self) {
-        let model: &mut dyn Any = self.model_mut();
-        if let Some(flood) = as_flood_mut(model) {
-            flood.follow();
-        }
+    /// Takes part in the run of the first of the processes with which it was opened, until that ends; for a process that is not the first.
+    pub fn follow(&mut self, processes: &Processes) {
+        processes.follow(self.model_mut());
     }
 
     /// As [`Simulation::open`], for a state that is restored, or frames that are read back: a flood does not arrange its water at
@@ -91,8 +86,10 @@ impl Simulation {
         scene.resolve_defaults();
         let opening = Opening { scene: &mut scene, folder, processes, is_restored };
         let kind = models::of(opening.scene)?;
-        if processes.link().is_some() && opening.scene.flood().is_none() {
-            let what = "several processes compute floods by scheme voronoi only: start the run without `mpirun`";
+        let is_shared = opening.scene.flood().is_some() || opening.scene.dew().is_some();
+        if processes.link().is_some() && !is_shared {
+            let what =
+                "several processes compute dew, and floods by scheme voronoi, only: start the run without `mpirun`";
             return Err(ModelError::Setup(what.into()).into());
         }
         let Opened { model, terrain, notes } = kind.open(opening)?;

@@ -140,6 +140,10 @@ impl Block {
         self.pairs.clear();
         self.start.push(0);
         for site in sites {
+            if !arrangement.may_be_near(site.position) {
+                self.start.push(self.pairs.len() as u32);
+                continue;
+            }
             for place in arrangement.cells.ranges_within(site.position, reach).flatten() {
                 let r_squared = distance_squared(arrangement.at(place), site.position);
                 if r_squared < reach * reach {

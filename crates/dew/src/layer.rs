@@ -81,12 +81,16 @@ impl Layer {
     /// What is found in the air as it stands.
     pub fn find(&self, dew: &Dew) -> Found {
         let places = dew.inside().map(|particle| particle.position).filter(|&place| self.is_near(place));
-        let (nearest, counts) = self.count(places);
-        let [before, behind] = [0, 1].map(|layer| f64::from(counts[layer]) / self.volumes[layer]);
+        let (nearest, own) = self.count(places);
         let pairs_of = |(sites, contact): (&Vec<usize>, &Contact)| {
-            sites.iter().map(|&site| contact.of_site(site).len()).sum::<usize>()
+            let own = sites.iter().filter(|&&site| dew.owns(contact.sites[site].position));
+            own.map(|&site| contact.of_site(site).len()).sum::<usize>()
         };
         let pairs: usize = self.sites.iter().zip([&dew.contact, &dew.ghosts]).map(pairs_of).sum();
-        Found { nearest, gap: self.width * (1.0 - before / behind), pairs: pairs as f64 }
+        let mut counts = [i64::from(own[0]), i64::from(own[1]), pairs as i64];
+        dew.processes.total(&mut counts, &mut []);
+        let nearest = dew.processes.least(nearest);
+        let [before, behind] = [0, 1].map(|layer| counts[layer] as f64 / self.volumes[layer]);
+        Found { nearest, gap: self.width * (1.0 - before / behind), pairs: counts[2] as f64 }
     }
 }

@@ -11,6 +11,7 @@ pub mod air;
 pub mod bodies;
 mod contact;
 mod dew;
+mod domain;
 pub mod drops;
 mod exchange;
 mod faces;
@@ -35,6 +36,6 @@ mod wetting;
 
 pub use dew::{Dew, LiveChange, Scatter, Setup, SourceChange};
 pub use fan::Fan;
-pub use open::open;
+pub use open::{open, open_on};
 pub use room::{Face, Image, Inflow, Room};
 pub use settings::{Condensation, Conductor, Humidity, LowUtility, Mean, Settings, WallTreatment};

@@ -1,5 +1,6 @@
 //! What the model shows.
 
+use crate::air::Particle;
 use crate::dew::{Dew, State};
 use crate::humid_air::HumidAir;
 use crate::measures::drop_sizes;
@@ -9,6 +10,7 @@ use corpuscle_model::{AdvanceObserver, CpuOnly, GpuModel, advance_with};
 use corpuscle_model::{
     Chart, Column, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Surface, Values,
 };
+use corpuscle_processes::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Dew {
@@ -19,12 +21,11 @@ impl Dew {
 
     fn air_set(&self) -> ParticleSet {
         let since = self.since();
-        let mut order: Vec<_> = self.inside().collect();
+        let mut order: Vec<Particle> =
+            self.processes.gather(self.inside().copied().collect::<Vec<_>>()).into_iter().flatten().collect();
         order.sort_unstable_by_key(|particle| particle.id);
-        let scalar = |of: &dyn Fn(&crate::air::Particle) -> f64| {
-            Values::Scalar(order.iter().map(|particle| of(particle)).collect())
-        };
-        let humidity = |particle: &crate::air::Particle| {
+        let scalar = |of: &dyn Fn(&Particle) -> f64| Values::Scalar(order.iter().map(of).collect());
+        let humidity = |particle: &Particle| {
             let air = HumidAir::with_mass_fraction(particle.temperature, self.air.pressure, particle.vapour);
             air.relative_humidity()
         };
@@ -86,7 +87,10 @@ impl Model for Dew {
 
     #[cfg(feature = "gpu")]
     fn cpu_only(&self) -> Option<CpuOnly> {
-        None
+        self.domain.as_ref().map(|_| CpuOnly {
+            what: "several processes compute dew on CPUs",
+            remedy: "leave `--backend gpu` out, or start the run without `mpirun`",
+        })
     }
 
     #[cfg(feature = "gpu")]
@@ -112,7 +116,7 @@ impl Model for Dew {
     }
 
     fn particles(&self) -> usize {
-        self.inside().count() + self.solids().particles.len()
+        self.inside_count() + self.solids().particles.len()
     }
 
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
@@ -120,8 +124,9 @@ impl Model for Dew {
         if self.gpu_solver.is_some() {
             return corpuscle_gpu::wait_for(self.advance_on_gpu(time, stop));
         }
+        self.processes.broadcast(&Command::Advance(time));
         while self.state.time + self.state.time_step <= time {
-            if stop.load(Ordering::Relaxed) {
+            if self.processes.any(stop.load(Ordering::Relaxed)) {
                 self.shown = self.shown.max(self.state.time);
                 return Ok(());
             }
@@ -146,6 +151,7 @@ impl Model for Dew {
     }
 
     fn frame(&self) -> Frame {
+        self.processes.broadcast(&Command::Frame);
         let air = self.shows.air.then(|| self.air_set());
         let solid = self.shows.solids.then(|| self.solid_set());
         let drops = self.wetting.iter().flat_map(Wetting::sets);
@@ -157,6 +163,7 @@ impl Model for Dew {
     }
 
     fn gauge_row(&self) -> Vec<f64> {
+        self.processes.broadcast(&Command::GaugeRow);
         self.measured(&self.totals())
     }
 
@@ -181,8 +188,10 @@ impl Model for Dew {
     }
 
     fn ledger(&self) -> Ledger {
-        let water = self.state.water.balance("water_kg", self.water());
-        let energy = self.state.energy.balance("energy_J", self.energy());
+        self.processes.broadcast(&Command::Ledger);
+        let ([water, energy], _) = self.booked();
+        let water = water.balance("water_kg", self.water());
+        let energy = energy.balance("energy_J", self.energy());
         Ledger { balances: vec![water, energy] }
     }
 
@@ -191,10 +200,18 @@ impl Model for Dew {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.shown, &self.state, self.wetting.as_ref().map(Wetting::state))).unwrap_or_default()
+        self.processes.broadcast(&Command::Save);
+        let mut state = self.state.clone();
+        ([state.water, state.energy], state.fogged) = self.booked();
+        state.air = self.processes.gather(std::mem::take(&mut state.air)).into_iter().flatten().collect();
+        state.air.sort_unstable_by_key(|particle| particle.id);
+        postcard::to_stdvec(&(self.shown, &state, self.wetting.as_ref().map(Wetting::state))).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), ModelError> {
+        if self.domain.is_some() {
+            self.processes.broadcast(&Command::Restore(state.to_vec()));
+        }
         let refused = |what: String| ModelError::Checkpoint(what);
         let (shown, state, drops): (f64, State, Option<WettingState>) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
@@ -214,7 +231,11 @@ impl Model for Dew {
         if !fits {
             return Err(refused("it belongs to another scene".into()));
         }
+        if self.domain.is_some() && state.overrides.is_some() {
+            return Err(refused("dew was changed while it ran: resume it without `mpirun`".into()));
+        }
         (self.shown, self.state) = (shown, state);
+        self.keep_part();
         self.set_evaporation();
         self.apply_overrides();
         self.renew_gpu(self.has_been_touched())

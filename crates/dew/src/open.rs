@@ -12,6 +12,7 @@ use crate::settings::{Condensation, Humidity, LowUtility, Mean, Settings, WallTr
 use crate::solids::sources::HeatSources;
 use crate::solids::{Body, Surface};
 use corpuscle_model::ModelError;
+use corpuscle_processes::Processes;
 use corpuscle_scene::Axis;
 use corpuscle_scene::dew::{self as written, HumidityTransport, Scheme, Treatment};
 use corpuscle_solids::Solid;
@@ -29,8 +30,17 @@ pub(crate) const LEAST_SOUND: f64 = 0.1;
 /// # Errors
 /// [`ModelError::Setup`] where a solid cannot be made, or the scene requires what this version cannot do.
 pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, ModelError> {
+    open_on(&Processes::alone(), scene, seed, folder)
+}
+
+/// As [`open`], with the air distributed over processes: all of them call it. The first then has the model; the others [follow](Processes::follow) it.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_on(processes: &Processes, scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, ModelError> {
     refuse_what_cannot_be(scene)?;
-    let bodies = bodies::open(scene, folder)?;
+    // A file may be missing for one of several processes only.
+    let bodies = processes.agree(bodies::open(scene, folder).map_err(ModelError::from), ModelError::Setup)?;
     let start = humid_air(&scene.air);
     let room = room(scene, &start);
     refuse_solids_at_inlets(&bodies, &room, scene.spacing_m)?;
@@ -38,7 +48,7 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     let settings = settings(scene, &start);
     let particles = bodies.iter().map(|body| particles(body, &room)).collect();
     let setup = Setup { settings, air, room, bodies: particles, fans: scene.fan.iter().map(fan).collect(), seed };
-    let mut dew = Dew::new(&setup, |_| [start.temperature, start.mass_fraction()])?;
+    let mut dew = Dew::new_on(processes, &setup, |_| [start.temperature, start.mass_fraction()])?;
     if !releases_heat(scene) {
         dew.without_latent_heat();
     }
@@ -59,6 +69,7 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     let laws = laws(scene, &solids)?;
     dew.lay_drops(laws, Arc::from(solids), sites_per_area(scene), seed);
     measure_faces(scene, &mut dew)?;
+    dew.lead();
     Ok(dew)
 }
 

@@ -333,7 +333,9 @@ impl Dew {
     pub fn transfer_water_to_drops(&mut self) {
         let Some(wetting) = self.wetting.as_mut() else { return };
         let left = wetting.transfer_to_drops(&mut self.state.water_on, self.state.time);
-        self.state.water.book(-left);
+        if self.processes.is_first() {
+            self.state.water.book(-left);
+        }
         self.set_evaporation();
     }
 

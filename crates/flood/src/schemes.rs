@@ -34,10 +34,6 @@ pub trait FloodModel: Model {
     /// [`ModelError::Setup`] where it has nothing of the kind, or the number is out of range: nothing has changed then.
     /// [`ModelError::Device`] where a GPU takes the steps and cannot go on with the change.
     fn change(&mut self, change: LiveChange) -> Result<(), ModelError>;
-
-    /// Takes part in what the model of the first of several processes is called for, until that is dropped; for a process that is not the first. Does
-    /// nothing where one process computes the flood.
-    fn follow(&mut self) {}
 }
 
 /// Sets a flood up as the `[flood]` of a scene says, its defaults resolved, with the scene's seed. `folder` is what relative paths refer to.
@@ -152,9 +148,5 @@ impl FloodModel for VoronoiFlood {
 
     fn change(&mut self, change: LiveChange) -> Result<(), ModelError> {
         Self::change(self, change)
-    }
-
-    fn follow(&mut self) {
-        Self::follow(self);
     }
 }

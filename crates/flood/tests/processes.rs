@@ -4,7 +4,7 @@ mod common;
 
 use corpuscle_flood::{Filling, LiveChange, StartWater, VoronoiFlood};
 use corpuscle_model::{Frame, Ledger, Map, Model, ModelError};
-use corpuscle_processes::{Processes, threads};
+use corpuscle_processes::{Processes, on_threads};
 use corpuscle_scene::FloodScene;
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
@@ -221,17 +221,12 @@ fn on_opened<T: Send>(
                 return Some(first(opened));
             }
             if let Ok(mut flood) = opened {
-                flood.follow();
+                process.follow(&mut flood);
             }
             None
         })
     };
-    std::thread::scope(|scope| {
-        let run = &run;
-        let all: Vec<_> = threads(processes).into_iter().map(|process| scope.spawn(move || run(process))).collect();
-        let results: Vec<Option<T>> = all.into_iter().map(|thread| thread.join().unwrap()).collect();
-        results.into_iter().flatten().next().unwrap()
-    })
+    on_threads(processes, run).unwrap()
 }
 
 /// The same for the flood of a scene.

@@ -13,6 +13,7 @@ mod map;
 mod name;
 mod observer;
 mod path;
+mod reproducible_sum;
 mod sums;
 mod surface;
 
@@ -27,6 +28,7 @@ pub use map::Map;
 pub use name::Name;
 pub use observer::{AdvanceObserver, ModelProgress, advance_with};
 pub use path::Path;
+pub use reproducible_sum::{ROUNDERS, ReproducibleSum};
 pub use sums::{CompensatedSum, ExactSum};
 pub use surface::{Distance, SolidShape, Surface};
 

@@ -5,10 +5,15 @@
 
 #![warn(missing_docs)]
 
+mod commands;
 mod threads;
 
-pub use threads::threads;
+pub use commands::{Command, Lead};
+pub use threads::{on_threads, threads};
 
+use corpuscle_model::ExactSum;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::fmt;
 use std::sync::Arc;
 
@@ -100,4 +105,80 @@ impl Processes {
     pub fn is_first(&self) -> bool {
         self.rank() == 0
     }
+
+    /// What each process gives, in their order.
+    pub fn gather_all<T: Serialize + DeserializeOwned>(&self, own: T) -> Vec<T> {
+        match self.link() {
+            None => vec![own],
+            Some(link) => link.all_gather(&to_bytes(&own)).iter().map(|bytes| from_bytes(bytes)).collect(),
+        }
+    }
+
+    /// What each process gives, at the first; nothing at others.
+    pub fn gather<T: Serialize + DeserializeOwned>(&self, own: T) -> Vec<T> {
+        let Some(link) = self.link() else { return vec![own] };
+        if !self.is_first() {
+            link.send_receive(&[(0, &to_bytes(&own))], &[]);
+            return Vec::new();
+        }
+        let others: Vec<usize> = (1..link.count()).collect();
+        let received = link.send_receive(&[], &others);
+        std::iter::once(own).chain(received.iter().map(|bytes| from_bytes(bytes))).collect()
+    }
+
+    /// Sends something to some processes, and receives what others send, with the process that it comes from.
+    pub fn swap<T: DeserializeOwned>(&self, outgoing: Vec<(usize, impl Serialize)>) -> Vec<(usize, T)> {
+        let Some(link) = self.link() else { return Vec::new() };
+        let to: Vec<usize> = outgoing.iter().map(|(to, _)| *to).collect();
+        let all = self.gather_all(to);
+        let senders = all.iter().enumerate().filter(|(_, to)| to.contains(&self.rank()));
+        let from: Vec<usize> = senders.map(|(from, _)| from).collect();
+        let bytes: Vec<_> = outgoing.into_iter().map(|(to, what)| (to, to_bytes(&what))).collect();
+        let outgoing: Vec<_> = bytes.iter().map(|(to, bytes)| (*to, &bytes[..])).collect();
+        let received = link.send_receive(&outgoing, &from);
+        from.into_iter().zip(received).map(|(from, bytes)| (from, from_bytes(&bytes))).collect()
+    }
+
+    /// Replaces counts and sums by those over all processes.
+    pub fn total(&self, counts: &mut [i64], sums: &mut [&mut ExactSum]) {
+        let Some(link) = self.link() else { return };
+        let mut all = counts.to_vec();
+        sums.iter().for_each(|sum| all.extend(sum.addends()));
+        link.sum(&mut all);
+        let (of_counts, of_sums) = all.split_at(counts.len());
+        counts.copy_from_slice(of_counts);
+        for (sum, addends) in sums.iter_mut().zip(of_sums.as_chunks().0) {
+            **sum = ExactSum::of_addends(addends);
+        }
+    }
+
+    /// The sum of all processes' sums.
+    pub fn total_of(&self, mut sum: ExactSum) -> f64 {
+        self.total(&mut [], &mut [&mut sum]);
+        sum.value()
+    }
+
+    /// Whether something holds for any process.
+    pub fn any(&self, holds: bool) -> bool {
+        let mut count = [i64::from(holds)];
+        self.total(&mut count, &mut []);
+        count[0] > 0
+    }
+
+    /// The least of a value over all processes.
+    pub fn least(&self, value: f64) -> f64 {
+        let Some(link) = self.link() else { return value };
+        let mut least = [value];
+        link.min(&mut least);
+        least[0]
+    }
+}
+
+fn to_bytes(what: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(what).unwrap_or_default()
+}
+
+/// What another process sent: of the type that it sent, or the processes do different things.
+fn from_bytes<T: DeserializeOwned>(bytes: &[u8]) -> T {
+    postcard::from_bytes(bytes).unwrap_or_else(|error| panic!("a message of another process is damaged: {error}"))
 }

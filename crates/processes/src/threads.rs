@@ -32,6 +32,19 @@ pub fn threads(count: usize) -> Vec<Processes> {
     all.map(|(rank, (to, from))| Processes::of(Arc::new(Thread { rank, to, from }))).collect()
 }
 
+/// Runs `run` on so many threads in place of processes, and returns what the first makes.
+///
+/// # Panics
+/// Where a thread panics.
+pub fn on_threads<T: Send>(count: usize, run: impl Fn(Processes) -> T + Sync) -> T {
+    std::thread::scope(|scope| {
+        let run = &run;
+        let all: Vec<_> = threads(count).into_iter().map(|process| scope.spawn(move || run(process))).collect();
+        let results: Vec<T> = all.into_iter().map(|thread| thread.join().expect("a thread has panicked")).collect();
+        results.into_iter().next().expect("there is no thread")
+    })
+}
+
 impl Thread {
     fn give(&self, to: usize, message: Message) {
         // A thread that has ended receives nothing; who waits for its answer panics in `take`.

@@ -11,6 +11,8 @@ pub struct Cells<const D: usize> {
     pub(crate) size: [f64; D],
     /// 1 / size: a product takes a fraction of a quotient's time.
     per_size: [f64; D],
+    /// Number of the first cell along each axis, counted from `low`; a whole number.
+    first: [f64; D],
     pub(crate) count: [usize; D],
     /// First particle of each cell, x fastest; one entry more than cells.
     pub(crate) start: Vec<u32>,
@@ -32,6 +34,7 @@ impl<const D: usize> Default for Cells<D> {
             low: [0.0; D],
             size: [0.0; D],
             per_size: [0.0; D],
+            first: [0.0; D],
             count: [0; D],
             start: Vec::new(),
             cell: Vec::new(),
@@ -55,6 +58,29 @@ impl<const D: usize> Cells<D> {
     /// comes k-th. Stable: particles of one cell keep their order.
     pub fn sort(&mut self, places: [&[f64]; D], size: [f64; D]) -> &[u32] {
         self.lay_over(places, size);
+        self.sort_into_cells(places)
+    }
+
+    /// The same with cells of just `size`, m, counted from `low`, m. Cells are made for `part`, m, only, by its lowest and highest corner; its outermost cells hold
+    /// what lies beyond.
+    pub fn sort_part(&mut self, places: [&[f64]; D], size: [f64; D], low: [f64; D], part: [[f64; D]; 2]) -> &[u32] {
+        (self.low, self.size, self.per_size) = (low, size, size.map(|size| 1.0 / size));
+        let number = |axis: usize, end: usize| ((part[end][axis] - low[axis]) * self.per_size[axis]).floor();
+        self.first = std::array::from_fn(|axis| number(axis, 0));
+        // A negative number becomes 0.
+        self.count = std::array::from_fn(|axis| (number(axis, 1) - self.first[axis]) as usize + 1);
+        self.sort_into_cells(places)
+    }
+
+    /// Sorts the particles of each cell by a key, those with the same key as they were, and returns the order.
+    pub fn sort_each_cell_by(&mut self, key: impl Fn(u32) -> u64) -> &[u32] {
+        for range in self.start.array_windows().map(|[from, to]| *from as usize..*to as usize) {
+            self.order[range].sort_by_key(|particle| key(*particle));
+        }
+        &self.order
+    }
+
+    fn sort_into_cells(&mut self, places: [&[f64]; D]) -> &[u32] {
         let mut cell = std::mem::take(&mut self.cell);
         let cell_of = |particle: usize| {
             let along = |axis: usize| self.along(axis, places[axis][particle]);
@@ -79,13 +105,19 @@ impl<const D: usize> Cells<D> {
         self.low = ranges.map(|range| range.0);
         self.size = size;
         self.per_size = size.map(|size| 1.0 / size);
+        self.first = [0.0; D];
         self.count = std::array::from_fn(|axis| (extent[axis] * self.per_size[axis]) as usize + 1);
     }
 
     #[inline(always)]
     pub(crate) fn along(&self, axis: usize, value: f64) -> usize {
-        // A negative number becomes 0.
-        (((value - self.low[axis]) * self.per_size[axis]) as usize).min(self.count[axis] - 1)
+        // A negative number becomes 0. Taking off whole numbers is exact, so cells do not depend on the part. To 32 bits a number is converted faster.
+        (((value - self.low[axis]) * self.per_size[axis] - self.first[axis]) as u32 as usize).min(self.count[axis] - 1)
+    }
+
+    /// The numbers along the axes of the cell that a particle at a place is sorted into, as counted in the whole.
+    pub fn numbers_at(&self, place: [f64; D]) -> [usize; D] {
+        std::array::from_fn(|axis| self.first[axis] as usize + self.along(axis, place[axis]))
     }
 
     /// Ranges of the sorted order that cover all particles within `reach` of a place along each axis, one a row of cells.
@@ -129,8 +161,10 @@ impl<const D: usize> Cells<D> {
     /// Distance of a coordinate from the slab of cells `cell`. The outermost slabs hold all that lies beyond, too.
     #[inline(always)]
     fn distance_along(&self, axis: usize, cell: usize, value: f64) -> f64 {
-        let low = self.low[axis] + cell as f64 * self.size[axis];
-        (low - value).max(value - (low + self.size[axis])).max(0.0)
+        let low = self.low[axis] + (self.first[axis] + cell as f64) * self.size[axis];
+        let below = if cell == 0 { 0.0 } else { low - value };
+        let above = if cell + 1 == self.count[axis] { 0.0 } else { value - (low + self.size[axis]) };
+        below.max(above).max(0.0)
     }
 
     /// Bytes held.

@@ -76,7 +76,7 @@ pub struct BenchOptions {
     pub gpu: Option<Gpu>,
     /// Whether each pass of a step is timed on the GPU.
     pub passes: bool,
-    /// The processes that share floods by scheme voronoi.
+    /// The processes that share floods by scheme voronoi, and dew.
     pub processes: Processes,
 }
 

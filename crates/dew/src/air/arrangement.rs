@@ -1,16 +1,21 @@
 //! Particles in the order of their cells, together with their images beyond the faces of the room.
+//!
+//! Cells are the same for any distribution of the air over processes, and within a cell particles stand by their identities: so neighbours have the same order
+//! everywhere.
 
 use super::Particle;
-use crate::room::Room;
+use crate::domain::HaloParticle;
+use crate::faces::BEYOND;
+use crate::room::{Face, Room};
 use corpuscle_sph::{Cells, FEWEST, NeighbourLists};
 use rayon::prelude::*;
 
 /// What stands at a place of the arrangement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
-    /// The particle, as arranged: itself, or what it is an image of.
+    /// The particle, as arranged: itself, or what it is an image of. Those of the halo are counted after the own.
     pub particle: u32,
-    /// Whether it is an image.
+    /// Whether it is an image, or of the halo: its neighbours are not searched.
     pub image: bool,
     /// The axes along which the image is mirrored.
     pub mirrored: [bool; 3],
@@ -34,21 +39,68 @@ pub struct Arrangement {
     /// Coordinates of the places, m.
     pub z: Vec<f64>,
     unsorted: [Vec<f64>; 3],
+    ids: Vec<u64>,
     images: Vec<Entry>,
-    new_number: Vec<u32>,
+    /// Number of each particle after the last sort, by that before.
+    pub new_number: Vec<u32>,
+    /// The part of the room that the own particles are in.
+    part: Part,
     spare: Vec<Particle>,
 }
 
+/// A part of the room as a box: its lowest and its highest corner, m, with `reach` to the sides where the room goes on, and without bounds where it ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Part(pub [[f64; 3]; 2]);
+
+impl Default for Part {
+    fn default() -> Self {
+        Self::WHOLE
+    }
+}
+
+impl Part {
+    /// The whole room.
+    pub const WHOLE: Self = Self([[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]]);
+
+    /// Whether a place lies in it.
+    pub fn contains(&self, place: [f64; 3]) -> bool {
+        (0..3).all(|axis| (self.0[0][axis]..=self.0[1][axis]).contains(&place[axis]))
+    }
+}
+
+/// How far beyond the faces of a room particles and their images stand at most, m: its lowest and its highest corner moved by as much.
+fn with_what_is_beyond(room: &Room, reach: f64) -> [[f64; 3]; 2] {
+    let margin = |face: &Face| if face.is_passed() { (BEYOND + 1.0) * reach } else { reach };
+    let end = |side: usize, sign: f64| {
+        let corner = [room.low, room.high][side];
+        [0, 1, 2].map(|axis| corner[axis] + sign * margin(&room.faces[axis][side]))
+    };
+    [end(0, -1.0), end(1, 1.0)]
+}
+
 impl Arrangement {
-    /// Sorts the particles, and makes images of those within `reach` of a face.
-    pub fn arrange(&mut self, particles: &mut Vec<Particle>, room: &Room, reach: f64) {
+    /// Sorts the particles and those of the halo, and makes images of those within `reach` of a face. The particles are in a `part` of the room.
+    pub fn arrange(
+        &mut self,
+        particles: &mut Vec<Particle>,
+        halo: &[HaloParticle],
+        room: &Room,
+        reach: f64,
+        part: Part,
+    ) {
         let count = particles.len();
         for (axis, values) in self.unsorted.iter_mut().enumerate() {
             particles.par_iter().with_min_len(FEWEST).map(|p| p.position[axis]).collect_into_vec(values);
         }
-        self.add_images(particles, room, reach);
+        particles.par_iter().with_min_len(FEWEST).map(|particle| particle.id).collect_into_vec(&mut self.ids);
+        self.add_images(particles, halo, room, reach);
+        self.part = part;
         let [x, y, z] = &self.unsorted;
-        let order = self.cells.sort([x, y, z], Cells::<3>::sizes_for(reach));
+        let [low, high] = with_what_is_beyond(room, reach);
+        let clamped = part.0.map(|corner| [0, 1, 2].map(|axis| corner[axis].clamp(low[axis], high[axis])));
+        self.cells.sort_part([x, y, z], Cells::<3>::sizes_for(reach), low, clamped);
+        let ids = &self.ids;
+        let order = self.cells.sort_each_cell_by(|from| ids[from as usize]);
         for (out, values) in [(&mut self.x, x), (&mut self.y, y), (&mut self.z, z)] {
             order.par_iter().with_min_len(FEWEST).map(|&from| values[from as usize]).collect_into_vec(out);
         }
@@ -68,20 +120,40 @@ impl Arrangement {
             None => Entry { particle: new_number[from as usize], image: false, mirrored: [false; 3] },
             Some(image) => {
                 let image = images[image];
-                Entry { particle: new_number[image.particle as usize], ..image }
+                let particle = new_number.get(image.particle as usize).copied().unwrap_or(image.particle);
+                Entry { particle, ..image }
             }
         };
         order.par_iter().with_min_len(FEWEST).map(entry).collect_into_vec(&mut self.entries);
     }
 
-    fn add_images(&mut self, particles: &[Particle], room: &Room, reach: f64) {
+    /// Adds images of particles, and the halo with its images.
+    fn add_images(&mut self, particles: &[Particle], halo: &[HaloParticle], room: &Room, reach: f64) {
         self.images.clear();
+        let Self { images, unsorted, ids, .. } = self;
+        let mut add = |number: usize, id: u64, position: [f64; 3], mirrored: [bool; 3]| {
+            images.push(Entry { particle: number as u32, image: true, mirrored });
+            unsorted.iter_mut().zip(position).for_each(|(values, at)| values.push(at));
+            ids.push(id);
+        };
         for (number, particle) in particles.iter().enumerate() {
-            room.images(particle.position, reach, |image| {
-                self.images.push(Entry { particle: number as u32, image: true, mirrored: image.mirrored });
-                self.unsorted.iter_mut().zip(image.position).for_each(|(values, at)| values.push(at));
-            });
+            room.images(particle.position, reach, |image| add(number, particle.id, image.position, image.mirrored));
         }
+        for (number, particle) in (particles.len()..).zip(halo) {
+            add(number, particle.id, particle.position, [false; 3]);
+            room.images(particle.position, reach, |image| add(number, particle.id, image.position, image.mirrored));
+        }
+    }
+
+    /// Whether air in the part that was arranged can be within the reach of a place.
+    pub fn may_be_near(&self, place: [f64; 3]) -> bool {
+        self.part.contains(place)
+    }
+
+    /// The order of a particle of the part that was arranged among all: by its cell, then by its identity.
+    pub fn order_of(&self, particle: &Particle) -> ([usize; 3], u64) {
+        let [x, y, z] = self.cells.numbers_at(particle.position);
+        ([z, y, x], particle.id)
     }
 
     /// The places' coordinates.
@@ -96,7 +168,7 @@ impl Arrangement {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let columns = 6 * 8 * self.x.capacity();
+        let columns = 7 * 8 * self.x.capacity();
         let spare = self.spare.capacity() * size_of::<Particle>();
         let numbers = 4 * (self.place_of.capacity() + self.new_number.capacity());
         self.cells.bytes()

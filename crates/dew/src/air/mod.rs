@@ -8,7 +8,7 @@ mod properties;
 mod scale;
 pub mod transport;
 
-pub use arrangement::{Arrangement, Entry};
+pub use arrangement::{Arrangement, Entry, Part};
 pub use density::Sums;
 #[cfg(feature = "gpu")]
 pub(crate) use pairs::DAMPING;

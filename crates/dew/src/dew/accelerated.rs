@@ -45,10 +45,10 @@ impl Dew {
         }
         let [heat, water] = [&taken.heat, &taken.water].map(|sum| more * sum.value());
         if self.is_closed() {
-            let mass = self.particle_mass() * self.state.air.len() as f64;
+            let mass = self.particle_mass() * self.air_count() as f64;
             self.state.drift[0] -= (heat - self.latent_heat * water) / (self.air.heat_capacity * mass);
             self.state.drift[1] -= water / mass;
-        } else {
+        } else if self.processes.is_first() {
             self.state.energy.book(heat);
             self.state.water.book(water);
         }
@@ -56,7 +56,7 @@ impl Dew {
 
     /// Water, kg, and energy, J, of the drift that is not yet applied to the air; negative where the air is to lose them.
     pub(super) fn residual(&self) -> [f64; 2] {
-        let mass = self.particle_mass() * self.state.air.len() as f64;
+        let mass = self.particle_mass() * self.air_count() as f64;
         let [temperature, vapour] = self.state.drift;
         [mass * vapour, mass * (self.air.heat_capacity * temperature + self.latent_heat * vapour)]
     }

@@ -141,6 +141,9 @@ impl LiveChange {
 impl Dew {
     fn change_live(&mut self, change: LiveChange) -> Result<(), ModelError> {
         change.check()?;
+        if self.domain.is_some() {
+            return Err(refuse("dew that several processes compute cannot be changed while it runs"));
+        }
         if change.axis() > 2 {
             return Err(refuse(format!("there is no axis {}", change.axis())));
         }

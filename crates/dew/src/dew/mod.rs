@@ -18,19 +18,21 @@ pub use source_change::SourceChange;
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
 use crate::contact::Contact;
+use crate::domain::Domain;
 use crate::exchange::Work;
 use crate::faces::OpenSide;
 use crate::fan::Fan;
 use crate::humid_air;
 use crate::layer::Layer;
 use crate::normalisation::Tensor;
-use crate::room::Room;
+use crate::room::{Face, Room};
 use crate::settings::Settings;
 use crate::solids::sources::HeatSources;
 use crate::solids::{Body, Conduction, Solids, Surface};
 use crate::walls;
 use crate::wetting::Wetting;
-use corpuscle_model::{Account, CompensatedSum, ModelError};
+use corpuscle_model::{Account, CompensatedSum, ExactSum, ModelError};
+use corpuscle_processes::Processes;
 use corpuscle_scene::Table;
 use corpuscle_scene::dew::Output;
 use live_change::Overrides;
@@ -53,6 +55,10 @@ pub struct Dew {
     /// Density at which the pressure is that at rest, kg/m3: the air's, but for how evenly its particles can stand.
     pub(crate) rest_density: f64,
     pub(crate) state: State,
+    /// The processes that share the air.
+    pub(crate) processes: Processes,
+    /// The part of this process, where there are several. The air of `state` is that of this part.
+    pub(crate) domain: Option<Domain>,
     arrangement: Arrangement,
     pub(crate) contact: Contact,
     pub(crate) ghosts: Contact,
@@ -106,7 +112,7 @@ pub(crate) struct State {
     /// Water on each particle of the solids, kg.
     pub water_on: Vec<f64>,
     /// Vapour that has become fog less fog that has become vapour, kg.
-    pub fogged: CompensatedSum,
+    pub fogged: ExactSum,
     /// Heat that has come from each solid held at a temperature, J; negative where it took it.
     pub held_heat: Vec<CompensatedSum>,
     /// Heat that each solid, then each wall, has got from its heater, from outside and by radiation, J.
@@ -156,6 +162,19 @@ impl Dew {
     /// # Errors
     /// Where ghost samples or air of low utility are required and a body has no surface.
     pub fn new(setup: &Setup, start: impl Fn([f64; 3]) -> [f64; 2]) -> Result<Self, ModelError> {
+        Self::new_on(&Processes::alone(), setup, start)
+    }
+
+    /// As [`Dew::new`], with the air distributed over processes: all of them call it, and what sums over the air, together. Where other processes
+    /// [follow](Processes::follow) the first from here on, [`Dew::lead`] says so.
+    ///
+    /// # Errors
+    /// As [`Dew::new`].
+    pub fn new_on(
+        processes: &Processes,
+        setup: &Setup,
+        start: impl Fn([f64; 3]) -> [f64; 2],
+    ) -> Result<Self, ModelError> {
         let Setup { settings, air, room, bodies, fans, seed } = setup;
         if settings.low_utility.is_some() && bodies.iter().any(|body| body.surface.is_none()) {
             return Err(ModelError::Setup(
@@ -183,7 +202,7 @@ impl Dew {
             air: Vec::new(),
             temperatures,
             water_on: vec![0.0; solids.particles.len()],
-            fogged: CompensatedSum::default(),
+            fogged: ExactSum::default(),
             held_heat: vec![CompensatedSum::default(); bodies.len()],
             supplied: vec![Default::default(); bodies.len()],
             heat_flow: vec![0.0; bodies.len()],
@@ -201,6 +220,8 @@ impl Dew {
             settings: *settings,
             air: *air,
             room: *room,
+            processes: processes.clone(),
+            domain: Domain::new(processes, room, scale.h()),
             scale,
             evaporation: vec![1.0; solids.particles.len()],
             solids,
@@ -234,6 +255,7 @@ impl Dew {
             gpu_solver: None,
         };
         dew.fill(bodies, start);
+        dew.balance();
         dew.settle();
         dew.state.time_step = dew.next_step(&[], dew.extremes());
         dew.state.water.initial = dew.water();
@@ -269,9 +291,10 @@ impl Dew {
         self.saturate(step);
         self.state.time += step;
         self.state.steps += 1;
-        self.state.particle_steps += self.state.air.len() as u64;
+        self.state.particle_steps += self.air_count() as u64;
         self.hold();
-        self.update_drops(self.state.air.len());
+        self.update_drops(self.air_count());
+        self.balance_if_due();
         let next = self.next_step(&self.work.stiff, extremes);
         self.state.time_step = next;
         self.check_step(extremes.speed_squared.sqrt(), step, next)
@@ -324,12 +347,18 @@ impl Dew {
         if fastest <= self.air.sound_speed || self.wetting.is_none() {
             return Ok(());
         }
+        let has_outlet = self.room.faces.as_flattened().contains(&Face::Outlet);
+        let where_it_leaves = if has_outlet {
+            ". Where cold air sinks or warm air rises through a side of \"outflow\", make that \"open\": no air comes back by the first"
+        } else {
+            ""
+        };
         Err(ModelError::Breakdown {
             time: self.state.time,
             step: self.state.steps,
             what: format!(
                 "air goes at {fastest:.3} m/s, faster than sound in this model ({:.3} m/s). Let air in more slowly, give it more room \
-                 round the solids, or a smaller dew.spacing_m",
+                 round the solids, or a smaller dew.spacing_m{where_it_leaves}",
                 self.air.sound_speed
             ),
         })
@@ -343,8 +372,7 @@ impl Dew {
     /// Water in the air as vapour and fog and on the solids, kg.
     pub(crate) fn water(&self) -> f64 {
         let in_air = self.inside().map(|particle| self.particle_mass() * (particle.vapour + particle.fog));
-        let on_solids = self.water_on_all();
-        in_air.chain([on_solids, self.residual()[0]]).collect::<CompensatedSum>().value()
+        self.total_with(in_air.collect(), [self.water_on_all(), self.residual()[0]].into_iter())
     }
 
     /// Water on the solids, kg.
@@ -364,12 +392,15 @@ impl Dew {
     pub(crate) fn energy(&self) -> f64 {
         let free = (0..self.solids.nodes()).filter(|&i| !self.solids.is_held(i));
         let solids = free.map(|i| self.solids.heat_capacity(i) * (self.state.temperatures[i] - COLD));
-        self.inside()
-            .map(|particle| self.energy_of(particle))
-            .chain(solids)
-            .chain([self.residual()[1]])
-            .collect::<CompensatedSum>()
-            .value()
+        let of_air = self.inside().map(|particle| self.energy_of(particle)).collect();
+        self.total_with(of_air, solids.chain([self.residual()[1]]))
+    }
+
+    /// A sum over the air of all processes, and what all processes have alike.
+    fn total_with(&self, mut of_air: ExactSum, others: impl Iterator<Item = f64>) -> f64 {
+        self.processes.total(&mut [], &mut [&mut of_air]);
+        others.for_each(|other| of_air.add(other));
+        of_air.value()
     }
 
     /// Gives the air in the room velocities, m/s, by place.
@@ -421,7 +452,8 @@ impl Dew {
         on.filter(|(particle, _)| particle.body as usize == body).map(|(_, water)| water).sum()
     }
 
-    /// The air, as it stands at the end of the last step; particles before inlets and beyond outlets among it.
+    /// The air, as it stands at the end of the last step; particles before inlets and beyond outlets among it. Where there are several processes, that of the
+    /// part of this one.
     pub fn air(&self) -> &[Particle] {
         &self.state.air
     }

@@ -1,12 +1,14 @@
 //! How the air moves in a step, and how long a step may be.
 
 use super::Dew;
-use crate::air::{Arrangement, Column, Entry, Particle, Properties, Rates, Role, Sums, sum_pairs};
+use crate::air::{Arrangement, Column, Entry, Part, Particle, Properties, Rates, Role, Sums, sum_pairs};
+use crate::domain::{Halo, HaloParticle};
 use crate::humid_air::{self, HumidAir};
 use crate::normalisation::{self, Tensor};
 use crate::room::Room;
 use crate::settings::Humidity;
 use crate::walls::{self, Push};
+use corpuscle_processes::Processes;
 use rayon::prelude::*;
 
 /// Acceleration limits the time step: this times the root of spacing over acceleration.
@@ -33,6 +35,18 @@ impl Extremes {
             acceleration_squared: particle.acceleration.iter().map(|along| along * along).sum(),
             diffusion: air.largest_diffusivity_at(particle.temperature) * rates.weights,
         }
+    }
+
+    /// The largest of all processes.
+    fn of_all(self, processes: &Processes) -> Self {
+        let Self { speed_squared, acceleration_squared, diffusion } = self;
+        let all = processes.gather_all([speed_squared, acceleration_squared, diffusion]);
+        let of = |[speed_squared, acceleration_squared, diffusion]: [f64; 3]| Self {
+            speed_squared,
+            acceleration_squared,
+            diffusion,
+        };
+        all.into_iter().map(of).fold(Self::default(), Self::or)
     }
 
     /// The larger of both; what is not a number stays none.
@@ -71,7 +85,9 @@ impl Dew {
 
     /// Arranges the air and finds what acts on it; velocities are taken `ahead` s on.
     pub(super) fn evaluate(&mut self, ahead: f64) {
+        self.share_air(ahead);
         let Self {
+            domain,
             settings,
             air,
             room,
@@ -88,7 +104,11 @@ impl Dew {
             push,
             ..
         } = self;
-        arrangement.arrange(&mut state.air, room, scale.h());
+        let (halo, part): (&[_], _) = match domain {
+            Some(domain) => (&domain.halo.particles, domain.part),
+            None => (&[], Part::WHOLE),
+        };
+        arrangement.arrange(&mut state.air, halo, room, scale.h(), part);
         arrangement.search(scale, sums);
         contact.update(arrangement, scale);
         ghosts.update(arrangement, scale);
@@ -96,33 +116,35 @@ impl Dew {
         walls::add_density(ghosts, arrangement, scale, 1.0, sums, push);
         walls::add_moments(contact, arrangement, scale, sums, push);
         arrangement.normalise(sums, tensors);
-        fill_columns(
+        set_densities(
             arrangement,
             sums,
-            tensors,
-            columns,
             &mut state.air,
             air,
             *rest_density,
-            ahead,
             room,
             scale.h(),
             &state.density_excess_beyond,
         );
+        if let Some(domain) = domain {
+            domain.exchange(&state.air, &arrangement.new_number, tensors);
+        }
+        let halo = domain.as_ref().map(|domain| &domain.halo);
+        fill_columns(arrangement, tensors, columns, &state.air, halo, air, *rest_density, ahead);
         rates.resize(state.air.len(), Rates::default());
         let relative = settings.humidity == Humidity::Relative;
         let saturated = humid_air::saturation_pressure(settings.ambient_temperature);
-        let humid_air =
-            |particle: &Particle| HumidAir::with_mass_fraction(particle.temperature, air.pressure, particle.vapour);
+        let humid_air = |temperature: f64, vapour: f64| HumidAir::with_mass_fraction(temperature, air.pressure, vapour);
         if relative {
-            for (column, entry) in columns.iter_mut().zip(&arrangement.entries) {
-                column.vapour = humid_air(&state.air[entry.particle as usize]).vapour_pressure / saturated;
+            for column in &mut *columns {
+                column.vapour = humid_air(column.temperature, column.vapour).vapour_pressure / saturated;
             }
         }
         sum_pairs(arrangement, columns, scale, air, rates);
         if relative {
             for (rates, particle) in rates.iter_mut().zip(&state.air) {
-                rates.moistening *= saturated * humid_air(particle).mass_fraction_slope();
+                let slope = humid_air(particle.temperature, particle.vapour).mass_fraction_slope();
+                rates.moistening *= saturated * slope;
             }
         }
         let walls = Push { contact, ghosts, arrangement, columns, scale, air, kappa: settings.kappa };
@@ -156,12 +178,13 @@ impl Dew {
             particle.vapour += step * rates.moistening + drift[1];
             Extremes::of(particle, rates, air)
         });
-        kicked.reduce(Extremes::default, Extremes::or)
+        kicked.reduce(Extremes::default, Extremes::or).of_all(&self.processes)
     }
 
     pub(super) fn extremes(&self) -> Extremes {
         let (air, particles) = (&self.air, self.state.air.par_iter().zip(&self.rates).with_min_len(4096));
-        particles.map(|(particle, rates)| Extremes::of(particle, rates, air)).reduce(Extremes::default, Extremes::or)
+        let own = particles.map(|(particle, rates)| Extremes::of(particle, rates, air));
+        own.reduce(Extremes::default, Extremes::or).of_all(&self.processes)
     }
 
     /// The longest step, s, in which sound does not cross a smoothing length in air of a speed, m/s.
@@ -173,6 +196,7 @@ impl Dew {
     pub(super) fn next_step(&self, stiff: &[f64], extremes: Extremes) -> f64 {
         let [speed, acceleration] = [extremes.speed_squared, extremes.acceleration_squared].map(f64::sqrt);
         let stiffest = stiff.iter().copied().fold(extremes.diffusion, f64::max);
+        let stiffest = -self.processes.least(-stiffest);
         let by_sound = self.step_by_sound(speed);
         let by_force = ACCELERATION_LIMIT * (self.scale.spacing / acceleration.max(1e-30)).sqrt();
         let by_diffusion = DIFFUSION_LIMIT / stiffest.max(1e-30);
@@ -190,16 +214,13 @@ fn virtual_temperature(temperature: f64, vapour: f64) -> f64 {
     temperature * (1.0 + 0.608 * vapour)
 }
 
-/// Fills the columns of particles, with their densities, and of their images.
-fn fill_columns(
+/// Sets the densities of particles.
+fn set_densities(
     arrangement: &Arrangement,
     sums: &[Sums],
-    tensors: &[Tensor],
-    columns: &mut Vec<Column>,
     particles: &mut [Particle],
     air: &Properties,
     rest_density: f64,
-    ahead: f64,
     room: &Room,
     reach: f64,
     density_excess_beyond: &[[f64; 2]; 3],
@@ -219,27 +240,42 @@ fn fill_columns(
             particle.density = particle.density.max(rest_density * (1.0 + density_excess_beyond[axis][side]));
         }
     });
-    let particles = &*particles;
+}
+
+/// Fills the columns of particles, of the halo, and of their images; `tensors` are those of the particles, then of the halo.
+fn fill_columns(
+    arrangement: &Arrangement,
+    tensors: &[Tensor],
+    columns: &mut Vec<Column>,
+    particles: &[Particle],
+    halo: Option<&Halo>,
+    air: &Properties,
+    rest_density: f64,
+    ahead: f64,
+) {
+    let seen = |number: usize| match (particles.get(number), halo) {
+        (None, Some(halo)) => {
+            let HaloParticle { velocity, temperature, vapour, .. } = halo.particles[number - particles.len()];
+            (velocity, halo.densities[number - particles.len()], temperature, vapour)
+        }
+        _ => {
+            let particle = &particles[number];
+            (particle.velocity_ahead(ahead), particle.density, particle.temperature, particle.vapour)
+        }
+    };
     let column = |(place, entry): (usize, &Entry)| {
-        let particle = &particles[entry.particle as usize];
-        let mut velocity = particle.velocity;
-        for axis in 0..3 {
-            if particle.role == Role::Inside {
-                velocity[axis] += ahead * particle.acceleration[axis];
-            }
-            if entry.mirrored[axis] {
-                velocity[axis] = -velocity[axis];
-            }
+        let (mut velocity, density, temperature, vapour) = seen(entry.particle as usize);
+        for (along, mirrored) in velocity.iter_mut().zip(entry.mirrored) {
+            *along = if mirrored { -*along } else { *along };
         }
         Column {
             position: arrangement.at(place),
             velocity,
-            pressure: air.sound_speed * air.sound_speed * (particle.density - rest_density)
-                / (particle.density * particle.density),
-            temperature: particle.temperature,
-            vapour: particle.vapour,
+            pressure: air.sound_speed * air.sound_speed * (density - rest_density) / (density * density),
+            temperature,
+            vapour,
             tensor: normalisation::mirrored(tensors[entry.particle as usize], entry.mirrored),
-            transformed: air.transformed(particle.temperature),
+            transformed: air.transformed(temperature),
         }
     };
     arrangement.entries.par_iter().enumerate().with_min_len(1024).map(column).collect_into_vec(columns);

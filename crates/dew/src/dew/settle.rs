@@ -42,8 +42,8 @@ impl Dew {
 
     /// The pressure at rest becomes that of the air as it stands: neither too much nor too little of it is in the room.
     pub(super) fn take_as_rest(&mut self) {
-        let sum: f64 = self.inside().map(|particle| particle.density).sum();
-        self.rest_density = sum / (self.inside().count() as f64).max(1.0);
+        let sum = self.processes.total_of(self.inside().map(|particle| particle.density).collect());
+        self.rest_density = sum / (self.inside_count() as f64).max(1.0);
     }
 
     /// Evens out the air in the room, in `most` sweeps at most.
@@ -52,7 +52,8 @@ impl Dew {
         for _ in 0..most {
             self.evaluate(0.0);
             let uneven = |rates: &Rates| rates.spread.iter().fold(0.0_f64, |most, along| most.max(along.abs()));
-            if self.rates.par_iter().map(uneven).reduce(|| 0.0, f64::max) * spacing < EVEN {
+            let most_uneven = self.rates.par_iter().map(uneven).reduce(|| 0.0, f64::max);
+            if -self.processes.least(-most_uneven) * spacing < EVEN {
                 break;
             }
             let particles = self.state.air.par_iter_mut().zip(&self.rates).with_min_len(1024);
@@ -69,7 +70,7 @@ impl Dew {
 
     /// Takes out air that a virtual force would throw off at the start: where it acts there is a vacuum.
     fn take_out_repelled(&mut self) {
-        let Self { contact, state, scale, .. } = self;
+        let Self { contact, state, scale, processes, .. } = self;
         let is_repelled = |pair: &Pair| {
             contact.walls[pair.other as usize] == WallTreatment::VirtualForce && pair.r < walls::CALM * scale.spacing
         };
@@ -77,7 +78,7 @@ impl Dew {
         for near in contact.near.iter().filter(|near| contact.of_air(near).iter().any(is_repelled)) {
             stays[near.particle as usize] = false;
         }
-        if !stays.contains(&false) {
+        if !processes.any(stays.contains(&false)) {
             return;
         }
         let mut stays = stays.into_iter();

@@ -2,12 +2,16 @@
 
 use super::accelerated::Taken;
 use super::{Dew, State};
-use crate::air::{Particle, Role};
+use crate::air::{Particle, Rates, Role};
 use crate::exchange::{Exchange, ToAir, Work, excess};
 use crate::room::Face;
 use crate::settings::Condensation;
-use corpuscle_model::CompensatedSum;
+use crate::solids::Site;
+use corpuscle_model::ExactSum;
 use rayon::prelude::*;
+
+/// Water that a particle of air deposits: its order among the air of all processes, the water, kg, and the shares of boundary particles.
+type Deposit = (([usize; 3], u64), f64, Vec<(u32, f64)>);
 
 impl Dew {
     /// What air and solids exchange as they stand.
@@ -34,12 +38,17 @@ impl Dew {
         supplied.resize(self.state.supplied.len(), [0.0; 3]);
         let exchange = self.at_surfaces();
         let factor = self.settings.time_factor;
-        exchange.to_solids(factor * step, to_solids);
+        let owns = |site: &Site| self.domain.as_ref().is_none_or(|domain| domain.owns_site(site));
+        exchange.to_solids(factor * step, owns, to_solids);
         let particles = self.solids.particles.len();
         share_of.clear();
         share_of.resize(particles, 1.0);
-        let conducted = |i| self.conduction.heat(i, &self.state.temperatures);
+        let nodes = self.domain.as_ref().map_or(0..self.solids.nodes(), |domain| domain.own_nodes(self.solids.nodes()));
+        let conducted = |i| if nodes.contains(&i) { self.conduction.heat(i, &self.state.temperatures) } else { 0.0 };
         (0..self.solids.nodes()).into_par_iter().with_min_len(1024).map(conducted).collect_into_vec(heat);
+        if let Some(domain) = &self.domain {
+            domain.complete(&self.contact.sites, to_solids, heat);
+        }
         stiff.clear();
         stiff.resize(self.contact.near.len(), 0.0);
         stiff.extend_from_slice(&self.conductances);
@@ -55,10 +64,13 @@ impl Dew {
         self.state.heat_flow.fill(0.0);
         let middle = self.state.time + 0.5 * step;
         self.sources.add_heat(middle, &self.solids, &self.state.temperatures, heat, of_solids, supplied);
+        let books = self.processes.is_first();
         for (sums, watts) in self.state.supplied.iter_mut().zip(&*supplied) {
             for (sum, &watts) in sums.iter_mut().zip(watts) {
                 sum.add(factor * step * watts);
-                self.state.energy.book(factor * step * watts);
+                if books {
+                    self.state.energy.book(factor * step * watts);
+                }
             }
         }
         let mut taken = Taken::default();
@@ -74,7 +86,9 @@ impl Dew {
             let heat = factor * heat;
             if self.solids.is_held(i) {
                 self.state.held_heat[self.solids.particles[i].body as usize].add(-step * heat);
-                self.state.energy.book(-step * heat);
+                if books {
+                    self.state.energy.book(-step * heat);
+                }
                 of_solids[i] = 0.0;
             } else {
                 self.state.temperatures[i] += step * heat / self.solids.heat_capacity(i);
@@ -103,11 +117,24 @@ impl Dew {
         let energy_of = |warming: f64, moistening: f64| {
             mass * step * (self.air.heat_capacity * warming + self.latent_heat * moistening)
         };
-        let inside = || air.iter().zip(&self.rates).filter(|(particle, _)| particle.role == Role::Inside);
-        let gained: CompensatedSum = inside().map(|(_, rates)| mass * step * rates.moistening).collect();
-        water.book(gained.value());
-        let gained: CompensatedSum = inside().map(|(_, rates)| energy_of(rates.warming, rates.moistening)).collect();
-        energy.book(gained.value());
+        let add = |mut sums: [ExactSum; 2], (particle, rates): (&Particle, &Rates)| {
+            if particle.role == Role::Inside {
+                sums[0].add(mass * step * rates.moistening);
+                sums[1].add(energy_of(rates.warming, rates.moistening));
+            }
+            sums
+        };
+        let both = |mut sums: [ExactSum; 2], others: [ExactSum; 2]| {
+            sums.iter_mut().zip(&others).for_each(|(sum, other)| sum.add_sum(other));
+            sums
+        };
+        let own = air.par_iter().zip(&self.rates).with_min_len(4096).fold(<[ExactSum; 2]>::default, add);
+        let mut gained = own.reduce(<[ExactSum; 2]>::default, both);
+        self.processes.total(&mut [], &mut gained.each_mut());
+        if self.processes.is_first() {
+            water.book(gained[0].value());
+            energy.book(gained[1].value());
+        }
         for (near, given) in self.contact.near.iter().zip(to_air) {
             let [warming, moistening] = given.from_beyond;
             let [warming, moistening] = match air[near.particle as usize].role {
@@ -158,40 +185,67 @@ impl Dew {
     fn deposit(&mut self, excesses: &mut [f64], step: f64) {
         let mass = self.particle_mass();
         let mut shares = std::mem::take(&mut self.work.shares);
+        // Of several processes, to be told to all.
+        let mut told: Vec<Deposit> = Vec::new();
         for at in 0..self.contact.near.len() {
             let particle = self.contact.near[at].particle as usize;
             if excesses[particle] > 0.0 {
                 self.at_surfaces().shares(&self.contact.near[at], &mut shares);
                 if !shares.is_empty() {
                     let water = mass * std::mem::replace(&mut excesses[particle], 0.0);
-                    self.deposit_of(particle, water, &shares, step);
+                    self.take_from_air(particle, water, &shares);
+                    if self.domain.is_some() {
+                        let order = self.arrangement.order_of(&self.state.air[particle]);
+                        told.push((order, water, shares.clone()));
+                    } else {
+                        self.deposit_of(water, &shares, step);
+                    }
                 }
             }
+        }
+        if self.domain.is_some() {
+            let mut all: Vec<Deposit> = self.processes.gather_all(told).into_iter().flatten().collect();
+            // As one process finds them.
+            all.sort_unstable_by_key(|(order, ..)| *order);
+            all.iter().for_each(|(_, water, shares)| self.deposit_of(*water, shares, step));
         }
         self.work.shares = shares;
     }
 
-    /// Deposits water of an air particle, kg, onto the boundary particles near it by their shares.
-    fn deposit_of(&mut self, particle: usize, water: f64, shares: &[(u32, f64)], step: f64) {
+    /// Part of the heat that condensation sets free at the surface at a boundary particle which the solid takes: the better conductor takes the most of it.
+    fn to_solid(&self, site: usize) -> f64 {
+        let conductivity = self.solids.material(site).conductivity;
+        conductivity / (conductivity + self.air.conductivity)
+    }
+
+    /// Takes the vapour of water that is deposited, kg, from an air particle, and gives it its part of the heat.
+    fn take_from_air(&mut self, particle: usize, water: f64, shares: &[(u32, f64)]) {
         let mass = self.particle_mass();
+        self.state.air[particle].vapour -= water / mass;
+        for &(site, share) in shares {
+            let heat = self.latent_heat * water * share;
+            let kept = 1.0 - self.to_solid(site as usize);
+            self.state.air[particle].temperature += kept * heat / (mass * self.air.heat_capacity);
+        }
+    }
+
+    /// Deposits water of an air particle, kg, onto the boundary particles near it by their shares.
+    fn deposit_of(&mut self, water: f64, shares: &[(u32, f64)], step: f64) {
         let factor = self.settings.time_factor;
         let mut taken = Taken::default();
-        let air = &mut self.state.air[particle];
-        air.vapour -= water / mass;
         for &(site, share) in shares {
             let site = site as usize;
             let heat = self.latent_heat * water * share;
             self.state.water_on[site] += factor * water * share;
-            // The heat is set free at the surface, from where the better conductor takes the most of it.
-            let conductivity = self.solids.material(site).conductivity;
-            let to_solid = conductivity / (conductivity + self.air.conductivity);
-            air.temperature += (1.0 - to_solid) * heat / (mass * self.air.heat_capacity);
+            let to_solid = self.to_solid(site);
             self.state.heat_flow[self.solids.particles[site].body as usize] += to_solid * heat / step;
             taken.add(to_solid * heat, water * share);
             let heat = factor * heat;
             if self.solids.is_held(site) {
                 self.state.held_heat[self.solids.particles[site].body as usize].add(-to_solid * heat);
-                self.state.energy.book(-to_solid * heat);
+                if self.processes.is_first() {
+                    self.state.energy.book(-to_solid * heat);
+                }
             } else {
                 self.state.temperatures[site] += to_solid * heat / self.solids.heat_capacity(site);
             }

@@ -134,11 +134,11 @@ impl Exchange<'_> {
         Flux { conductance, difference, water, to_solid }
     }
 
-    /// What every site gets where the water on it changes for `step` s, into `given`. Images of sites get nothing.
-    pub fn to_solids(&self, step: f64, given: &mut Vec<ToSolid>) {
+    /// What every site gets that `owns` holds for, where the water on it changes for `step` s, into `given`. Images of sites get nothing.
+    pub fn to_solids(&self, step: f64, owns: impl Fn(&Site) -> bool + Sync, given: &mut Vec<ToSolid>) {
         let sites = self.contact.sites.par_iter().enumerate();
         let of = |(number, site): (usize, &Site)| {
-            if site.image { ToSolid::default() } else { self.to_solid(number, step) }
+            if site.image || !owns(site) { ToSolid::default() } else { self.to_solid(number, step) }
         };
         sites.map(of).collect_into_vec(given);
     }

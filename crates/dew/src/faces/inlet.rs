@@ -35,7 +35,9 @@ impl Dew {
                     }
                     let particle = Particle::new(self.state.next_id, place, inflow.temperature, inflow.vapour);
                     self.state.next_id += 1;
-                    self.state.air.push(placed(particle, &self.room, self.slowest()));
+                    if self.owns(place) {
+                        self.state.air.push(placed(particle, &self.room, self.slowest()));
+                    }
                 }
             }
         }

@@ -11,6 +11,7 @@ use crate::air::{Particle, Role, Scale};
 use crate::dew::Dew;
 use crate::room::{Face, Mirrors, Room};
 use crate::solids::{Body, Searched, Solids, Surface};
+use corpuscle_model::ExactSum;
 
 /// Distance beyond an open face at which air is removed, in smoothing lengths: particles inside have neighbours in the first, and these in the second.
 pub(crate) const BEYOND: f64 = 2.0;
@@ -73,21 +74,25 @@ impl Dew {
         });
         let free = Free::new(&self.solids, &self.room, &self.scale, bodies.iter().map(|body| body.surface.clone()));
         let is_free = |place: [f64; 3]| free.holds(place);
+        let mut next_id = self.state.next_id;
         for z in range[2].clone() {
             for y in range[1].clone() {
                 for x in range[0].clone() {
                     let index = [x, y, z];
                     let place = [0, 1, 2].map(|axis| self.room.low[axis] + (index[axis] as f64 + 0.5) * apart[axis]);
-                    if !self.room.is_filled(place) || !is_free(place) {
+                    // By the position on the lattice, so that no process has to know what another leaves out.
+                    let id = next_id;
+                    next_id += 1;
+                    if !self.owns(place) || !self.room.is_filled(place) || !is_free(place) {
                         continue;
                     }
                     let [temperature, vapour] = start(place);
-                    let particle = Particle::new(self.state.next_id, place, temperature, vapour);
-                    self.state.next_id += 1;
+                    let particle = Particle::new(id, place, temperature, vapour);
                     self.state.air.push(placed(particle, &self.room, self.slowest()));
                 }
             }
         }
+        self.state.next_id = next_id;
         self.open_sides = OpenSide::all(&self.room, &self.scale, is_free);
     }
 
@@ -162,22 +167,22 @@ impl Dew {
             return BeforeOutlet::default();
         }
         let face = [self.room.low, self.room.high][side][axis];
-        // Sums and number.
-        let (mut near, mut layer) = ([0.0; 3], [0.0; 2]);
+        let (mut counts, mut sums) = ([0; 2], [ExactSum::default(); 3]);
         for particle in self.inside() {
             let distance = (particle.position[axis] - face).abs();
             if distance < self.scale.h() {
-                near = [near[0] + particle.acceleration[axis], near[1] + particle.velocity[axis], near[2] + 1.0];
+                sums[0].add(particle.acceleration[axis]);
+                sums[1].add(particle.velocity[axis]);
+                counts[0] += 1;
             }
             if distance < OUTLET_LAYER * self.scale.h() {
-                layer = [layer[0] + particle.spreading[axis], layer[1] + 1.0];
+                sums[2].add(particle.spreading[axis]);
+                counts[1] += 1;
             }
         }
-        BeforeOutlet {
-            acceleration: near[0] / near[2].max(1.0),
-            velocity: near[1] / near[2].max(1.0),
-            spreading: layer[0] / layer[1].max(1.0),
-        }
+        self.processes.total(&mut counts, &mut sums.each_mut());
+        let mean = |sum: usize, count: usize| sums[sum].value() / counts[count].max(1) as f64;
+        BeforeOutlet { acceleration: mean(0, 0), velocity: mean(1, 0), spreading: mean(2, 1) }
     }
 
     /// The pressure p beyond outlets lets sound out: dp/dt = rho c du/dt - (c / L) p, with u the speed outwards and L the length of the room (Rudy &

@@ -9,6 +9,8 @@ use super::BEYOND;
 use crate::air::{Particle, Role, Scale};
 use crate::dew::Dew;
 use crate::room::{Face, Room};
+use corpuscle_model::{ROUNDERS, ReproducibleSum};
+use corpuscle_processes::Processes;
 
 /// How far beyond an open side the last particle of a full column stands, m, nearer than what is let go of; particles are `apart` m apart, and
 /// `h` is the smoothing length. A ten-thousandth more, so that rounding does not decide whether there is room for one.
@@ -30,7 +32,7 @@ pub struct OpenSide {
     /// Columns that no solid stands in.
     free: Vec<bool>,
     /// Sum of the velocities across the side of the air before each column, m/s, and its number.
-    before: Vec<[f64; 2]>,
+    before: Vec<(ReproducibleSum<f64>, u32)>,
     /// Mean velocity across the side before each column, m/s.
     velocity: Vec<f64>,
     /// How far the last of each column is beyond the side, m.
@@ -57,7 +59,7 @@ impl OpenSide {
             counts,
             apart,
             free: Vec::new(),
-            before: vec![[0.0; 2]; columns],
+            before: vec![(ReproducibleSum::NOTHING, 0); columns],
             velocity: vec![0.0; columns],
             outermost: vec![0.0; columns],
         };
@@ -100,17 +102,25 @@ impl OpenSide {
     }
 
     /// Samples the velocity of the air before each column.
-    fn sample_velocities(&mut self, room: &Room, air: &[Particle], reach: f64, rise: impl Fn(&Particle) -> f64) {
+    fn sample_velocities(
+        &mut self,
+        processes: &Processes,
+        room: &Room,
+        air: &[Particle],
+        reach: f64,
+        rise: impl Fn(&Particle) -> f64,
+    ) {
         let outward = [-1.0, 1.0][self.side];
-        self.before.fill([0.0; 2]);
+        self.before.fill((ReproducibleSum::NOTHING, 0));
         self.outermost.fill(f64::NEG_INFINITY);
         for particle in air {
             let depth = room.depth_beyond(particle.position, self.axis, self.side);
             match particle.role {
                 Role::Inside if depth > -reach => {
                     let column = self.column(room, particle.position);
-                    self.before[column][0] += particle.velocity[self.axis] + outward * rise(particle);
-                    self.before[column][1] += 1.0;
+                    let (sum, count) = &mut self.before[column];
+                    sum.add(particle.velocity[self.axis] + outward * rise(particle), &ROUNDERS);
+                    *count += 1;
                 }
                 Role::Outside(axis, side) if (usize::from(axis), usize::from(side)) == (self.axis, self.side) => {
                     let column = self.column(room, particle.position);
@@ -119,8 +129,26 @@ impl OpenSide {
                 _ => {}
             }
         }
+        if processes.count() > 1 {
+            self.collect(processes);
+        }
         for column in 0..self.velocity.len() {
             self.velocity[column] = self.mean_before(column);
+        }
+    }
+
+    /// Puts together what all processes have sampled.
+    fn collect(&mut self, processes: &Processes) {
+        let is_any = |column: &usize| self.before[*column].1 > 0 || self.outermost[*column] > f64::NEG_INFINITY;
+        let sample = |column: usize| (column, self.before[column].0, self.before[column].1, self.outermost[column]);
+        let own: Vec<(usize, ReproducibleSum<f64>, u32, f64)> =
+            (0..self.before.len()).filter(is_any).map(sample).collect();
+        self.before.fill((ReproducibleSum::NOTHING, 0));
+        self.outermost.fill(f64::NEG_INFINITY);
+        for (column, theirs, count, outermost) in processes.gather_all(own).into_iter().flatten() {
+            let sum = &mut self.before[column];
+            *sum = (sum.0.with(&theirs), sum.1 + count);
+            self.outermost[column] = self.outermost[column].max(outermost);
         }
     }
 
@@ -131,8 +159,8 @@ impl OpenSide {
         let mut sum = [0.0; 2];
         for b in range[1].clone() {
             for a in range[0].clone() {
-                let [velocity, count] = self.before[a + self.counts[0] * b];
-                sum = [sum[0] + velocity, sum[1] + count];
+                let (velocity, count) = self.before[a + self.counts[0] * b];
+                sum = [sum[0] + velocity.value(), sum[1] + f64::from(count)];
             }
         }
         sum[0] / sum[1].max(1.0)
@@ -151,7 +179,7 @@ impl Dew {
                 let inward = [1.0, -1.0][side] * particle.velocity[axis];
                 sound * (particle.density / rest - 1.0) + 0.5 * inward.max(0.0).powi(2) / sound
             };
-            open.sample_velocities(&self.room, &self.state.air, self.scale.h(), rise);
+            open.sample_velocities(&self.processes, &self.room, &self.state.air, self.scale.h(), rise);
             for particle in &mut self.state.air {
                 if particle.role == Role::Outside(open.axis as u8, open.side as u8) {
                     particle.velocity = [0.0; 3];
@@ -177,7 +205,9 @@ impl Dew {
                 particle.role = Role::Outside(open.axis as u8, open.side as u8);
                 particle.velocity[open.axis] = open.velocity[column];
                 state.next_id += 1;
-                state.air.push(particle);
+                if self.owns(place) {
+                    self.state.air.push(particle);
+                }
                 depth += apart;
             }
         }

@@ -96,13 +96,14 @@ impl Dew {
 
     /// The air as it stands here.
     pub(crate) fn totals(&self) -> Totals {
-        let sum = |of: fn(&Particle) -> f64| self.inside().map(of).sum::<f64>();
+        let sum = |of: fn(&Particle) -> f64| self.processes.total_of(self.inside().map(of).collect());
+        let fastest = self.inside().map(Particle::speed_squared).fold(0.0, f64::max).sqrt();
         Totals {
-            count: self.inside().count() as f64,
+            count: self.inside_count() as f64,
             temperature: sum(|particle| particle.temperature),
             vapour: sum(|particle| particle.vapour),
             fog: sum(|particle| particle.fog),
-            fastest: self.inside().map(Particle::speed_squared).fold(0.0, f64::max).sqrt(),
+            fastest: -self.processes.least(-fastest),
         }
     }
 

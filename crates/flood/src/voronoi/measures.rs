@@ -1,11 +1,12 @@
 //! What gauges measure.
 
-use super::domain::{Command, total};
+use super::domain::total;
 use super::{DENSITY, State, VoronoiFlood};
 use crate::gauges::{LineGauge, PointGauge};
 use crate::obstacles::force_columns;
 use crate::sampling::Sample;
 use corpuscle_model::{Account, ExactSum, GaugeColumn};
+use corpuscle_processes::Command;
 
 impl VoronoiFlood {
     /// The gauges that were placed while it runs.
@@ -32,7 +33,7 @@ impl VoronoiFlood {
     }
 
     pub(super) fn row(&self) -> Vec<f64> {
-        self.broadcast(Command::GaugeRow);
+        self.broadcast(&Command::GaugeRow);
         let placed: Vec<PointGauge> = self.placed().collect();
         let points = self.points.iter().chain(&placed).map(|point| point.at);
         let samples = self.samples(points.chain(self.lines.iter().flat_map(|line| line.places())).collect());
@@ -72,7 +73,7 @@ impl VoronoiFlood {
         });
         let own: Vec<(usize, [f64; 3])> = own.collect();
         let mut samples = vec![Sample::default(); positions.len()];
-        for (number, [depth, u, v]) in domain.gather::<Vec<(usize, [f64; 3])>>(&own).into_iter().flatten() {
+        for (number, [depth, u, v]) in domain.processes.gather(own).into_iter().flatten() {
             samples[number] = Sample { depth, velocity: [u, v] };
         }
         samples

@@ -1,13 +1,14 @@
 //! What a flood shows of itself.
 
 use super::change::Overrides;
-use super::domain::{self, Command, Domain};
+use super::domain::{self, Domain};
 use super::{DENSITY, State, VoronoiFlood, maps};
 #[cfg(feature = "gpu")]
 use corpuscle_model::GpuModel;
 use corpuscle_model::{
     Balance, Column, CpuOnly, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values,
 };
+use corpuscle_processes::Command;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -29,6 +30,13 @@ struct Shown {
 }
 
 impl VoronoiFlood {
+    /// Sends a command to the other processes, if there are any.
+    pub(super) fn broadcast(&self, command: &Command) {
+        if let Some(domain) = &self.solver.domain {
+            domain.processes.broadcast(command);
+        }
+    }
+
     /// The wet cells of all processes, at the first, in the order of their points.
     fn wet_shown(&self) -> Vec<Shown> {
         let (mesh, domain) = (&self.solver.mesh, self.solver.domain.as_ref());
@@ -44,7 +52,7 @@ impl VoronoiFlood {
         });
         let mut shown: Vec<Shown> = shown.collect();
         if let Some(domain) = domain {
-            shown = domain.gather::<Vec<Shown>>(&shown).into_iter().flatten().collect();
+            shown = domain.processes.gather(shown).into_iter().flatten().collect();
         }
         shown.sort_unstable_by_key(|cell| cell.point);
         shown
@@ -102,7 +110,7 @@ impl Model for VoronoiFlood {
         if self.on_gpu.is_some() {
             return corpuscle_gpu::wait_for(self.advance_on_gpu(time, stop));
         }
-        self.broadcast(Command::Advance(time));
+        self.broadcast(&Command::Advance(time));
         // On a thread of the pool: from outside, each pass of a small flood would wait for one to wake up.
         rayon::scope(|_| {
             while self.state.time < time {
@@ -118,7 +126,7 @@ impl Model for VoronoiFlood {
     }
 
     fn frame(&self) -> Frame {
-        self.broadcast(Command::Frame);
+        self.broadcast(&Command::Frame);
         let mesh = &self.solver.mesh;
         let wet = self.wet_shown();
         let count = wet.len() + self.state.falling.len();
@@ -162,7 +170,7 @@ impl Model for VoronoiFlood {
     }
 
     fn maps(&self) -> Vec<Map> {
-        self.broadcast(Command::Maps);
+        self.broadcast(&Command::Maps);
         let water = |cell: usize| self.water_shown(cell);
         let mesh = &self.solver.mesh;
         let domain = self.solver.domain.as_ref();
@@ -173,7 +181,7 @@ impl Model for VoronoiFlood {
     }
 
     fn ledger(&self) -> Ledger {
-        self.broadcast(Command::Ledger);
+        self.broadcast(&Command::Ledger);
         let ([water, momentum, _], _) = self.booked();
         let water = water.balance("water_m3", self.stored());
         let momentum = momentum.balance("momentum", self.momentum());
@@ -186,13 +194,13 @@ impl Model for VoronoiFlood {
     }
 
     fn save(&self) -> Vec<u8> {
-        self.broadcast(Command::Save);
+        self.broadcast(&Command::Save);
         postcard::to_stdvec(&(self.shown, &self.gathered_state())).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), ModelError> {
         if self.solver.domain.as_ref().is_some_and(Domain::is_first) {
-            self.broadcast(Command::Restore(state.to_vec()));
+            self.broadcast(&Command::Restore(state.to_vec()));
         }
         let refused = |what: String| ModelError::Checkpoint(what);
         let (shown, mut state): (f64, State) =

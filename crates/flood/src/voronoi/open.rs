@@ -401,7 +401,10 @@ impl VoronoiFlood {
         // Each process looks at its own ground.
         let own = all.filter(|tile| self.solver.domain.as_ref().is_none_or(|domain| domain.owns_tile(*tile)));
         let tiles: Vec<usize> = if bodies.is_empty() { Vec::new() } else { own.filter(wet).collect() };
-        let tiles = self.solver.domain.as_ref().map(|domain| domain.union(&tiles)).unwrap_or(tiles);
+        let tiles = match &self.solver.domain {
+            Some(domain) => domain.union(tiles),
+            None => tiles,
+        };
         self.make_tiles(tiles)
     }
 

@@ -11,10 +11,10 @@ use super::friction::Slowing;
 use super::local::Local;
 use super::mesh::{Mesh, NONE};
 use super::reconstruction::slopes;
-use super::sums::{ROUNDERS, ReproducibleSum, total};
+use super::sums::total;
 use super::walls::OverCrest;
 use super::water::{Column, Slopes, Water};
-use corpuscle_model::ExactSum;
+use corpuscle_model::{ExactSum, ROUNDERS, ReproducibleSum};
 use corpuscle_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
 
@@ -234,7 +234,7 @@ impl Solver {
     pub fn time_step(&mut self) -> f64 {
         self.mark_wet();
         let step = self.chunks.found.iter().map(|found| COURANT * found.step).fold(self.longest, f64::min);
-        self.domain.as_ref().map_or(step, |domain| domain.least(step))
+        self.domain.as_ref().map_or(step, |domain| domain.processes.least(step))
     }
 
     /// The tiles that must be made, as water stands near them, in the order of their numbers: those of all processes.
@@ -252,7 +252,7 @@ impl Solver {
             }
         }
         if let Some(domain) = domain {
-            return domain.union(&missing);
+            return domain.union(missing);
         }
         missing.sort_unstable();
         missing.dedup();
@@ -263,7 +263,7 @@ impl Solver {
     pub fn count(&mut self) -> bool {
         let mut counts = [i64::from(self.chunks.found.iter().any(|found| found.rim)), self.wet_cells_here() as i64];
         if let Some(domain) = &mut self.domain {
-            domain.total(&mut counts, &mut []);
+            domain.processes.total(&mut counts, &mut []);
             domain.wet = counts[1] as usize;
         }
         counts[0] > 0
@@ -391,7 +391,7 @@ impl Solver {
         let mut counts = [i64::from(self.chunks.found.iter().any(|found| found.broken)), self.wet_cells_here() as i64];
         if let Some(domain) = &mut self.domain {
             let ([g, h], [p, q]) = (&mut by_ground, &mut slowed);
-            domain.total(&mut counts, &mut [g, h, p, q]);
+            domain.processes.total(&mut counts, &mut [g, h, p, q]);
             domain.wet = counts[1] as usize;
         }
         self.broken = counts[0] > 0;

@@ -106,7 +106,7 @@ impl VoronoiFlood {
         let domain = self.solver.domain.as_ref();
         if let Some(domain) = domain {
             let sums = std::iter::once(&mut gained).chain(self.pushes.iter_mut().flatten());
-            domain.total(&mut [], &mut sums.collect::<Vec<_>>());
+            domain.processes.total(&mut [], &mut sums.collect::<Vec<_>>());
         }
         done.slowed.iter().chain(&done.by_ground).for_each(|momentum| gained.add(*momentum));
         // Sums over all processes are booked by the first.
@@ -162,7 +162,10 @@ impl VoronoiFlood {
         falling.iter_mut().for_each(|drop| drop.fall(gravity, step));
         let landed: Vec<usize> = (0..falling.len()).filter(|number| self.has_landed(&falling[*number])).collect();
         // All processes have all drops; whose ground it is says which have landed.
-        let landed = self.solver.domain.as_ref().map(|domain| domain.union(&landed)).unwrap_or(landed);
+        let landed = match &self.solver.domain {
+            Some(domain) => domain.union(landed),
+            None => landed,
+        };
         let (mut number, mut next) = (0, landed.iter().peekable());
         let has_landed = |_: &mut Drop| {
             number += 1;
@@ -226,7 +229,10 @@ impl VoronoiFlood {
         };
         // Of the process whose tile was made first.
         let own = self.solver.broken_cell().map(position);
-        let all = self.solver.domain.as_ref().map_or_else(|| vec![own], |domain| domain.gather_all(&own));
+        let all = match &self.solver.domain {
+            Some(domain) => domain.processes.gather_all(own),
+            None => vec![own],
+        };
         all.into_iter().flatten().min_by_key(|(made, cell, _)| (*made, *cell)).map(|(.., position)| position)
     }
 

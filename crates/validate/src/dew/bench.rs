@@ -7,6 +7,7 @@ use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{Dew, Face, Room, Settings, Setup};
 use corpuscle_model::ModelError;
+use corpuscle_processes::Processes;
 use corpuscle_solids::{Pose, Shape, Solid};
 
 pub(crate) const BENCHES: &[Bench] = &[
@@ -14,14 +15,14 @@ pub(crate) const BENCHES: &[Bench] = &[
         name: "dew/plate-100k",
         about: "100,000 particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
         needs_gpu: false,
-        is_shared: false,
+        is_shared: true,
         run: |options| rate("dew/plate-100k", 46, options),
     },
     Bench {
         name: "dew/plate-1m",
         about: "A million particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
         needs_gpu: false,
-        is_shared: false,
+        is_shared: true,
         run: |options| rate("dew/plate-1m", 100, options),
     },
     Bench {
@@ -42,12 +43,16 @@ const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, dens
 const MEASURING: Measuring = Measuring { name: "", dimensions: 3, settling: 40, steps: [1.001, 20.0], seconds: 8.0 };
 
 fn rate(name: &'static str, side: usize, options: &BenchOptions) -> Vec<Rate> {
-    let measured = plate(side).and_then(|dew| Measuring { name, ..MEASURING }.rate(dew, options));
-    measured.unwrap_or_default().into_iter().collect()
+    let Ok(mut dew) = plate(side, &options.processes) else { return Vec::new() };
+    if !options.processes.is_first() {
+        options.processes.follow(&mut dew);
+        return Vec::new();
+    }
+    Measuring { name, ..MEASURING }.rate(dew, options).unwrap_or_default().into_iter().collect()
 }
 
 /// Stirred air over a cold plate, `side` particles each way.
-fn plate(side: usize) -> Result<Dew, ModelError> {
+fn plate(side: usize, processes: &Processes) -> Result<Dew, ModelError> {
     let temperature = ZERO_CELSIUS + 25.0;
     let vapour = HumidAir::with_relative_humidity(temperature, 101_325.0, 0.7).mass_fraction();
     let length = side as f64 * SPACING;
@@ -70,9 +75,10 @@ fn plate(side: usize) -> Result<Dew, ModelError> {
         fans: Vec::new(),
         seed: 1,
     };
-    let mut dew = Dew::new(&setup, |_| [temperature, vapour])?;
+    let mut dew = Dew::new_on(processes, &setup, |_| [temperature, vapour])?;
     let wave = |at: f64| 0.05 * (std::f64::consts::TAU * at / length).sin();
     dew.stir(|[x, y, _]| [wave(y), wave(x), 0.0]);
+    dew.lead();
     Ok(dew)
 }
 

@@ -114,7 +114,7 @@ fn voronoi_rate(name: &'static str, particles: usize, waves: bool, options: &Ben
         return Vec::new();
     };
     if !options.processes.is_first() {
-        flood.follow();
+        options.processes.follow(&mut flood);
         return Vec::new();
     }
     Measuring { name, ..MEASURING }.rate(flood, options).unwrap_or_default().into_iter().collect()

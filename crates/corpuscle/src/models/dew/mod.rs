@@ -41,11 +41,11 @@ impl ModelKind for Kind {
     }
 
     fn open(&self, opening: Opening<'_>) -> Result<Opened, Error> {
-        let Opening { scene, folder, .. } = opening;
+        let Opening { scene, folder, processes, .. } = opening;
         let settings = dew(scene)?;
         let parcels = settings.size_m.iter().product::<f64>() / settings.spacing_m.powi(3);
         refuse_what_does_not_fit(parcels * BYTES_PER_AIR_PARTICLE, "give a larger dew.spacing_m or a smaller box")?;
-        Ok(Opened::plain(Box::new(corpuscle_dew::open(dew(scene)?, scene.seed, folder)?)))
+        Ok(Opened::plain(Box::new(corpuscle_dew::open_on(processes, dew(scene)?, scene.seed, folder)?)))
     }
 
     fn bytes_per_particle(&self, _scene: &Scene) -> f64 {

@@ -4,6 +4,7 @@ mod measured;
 mod on_device;
 
 use super::{Dew, State};
+use crate::air::Part;
 use crate::faces::deepest_outside;
 use crate::gpu::{BatchResult, Crossed, GpuSolver, MOST_FANS};
 use crate::room::Face;
@@ -244,7 +245,7 @@ impl Dew {
         solver.download(&mut self.state).await?;
         if self.layers.iter().any(Option::is_some) {
             // Gauges of layers need pairs of air and wall.
-            self.arrangement.arrange(&mut self.state.air, &self.room, self.scale.h());
+            self.arrangement.arrange(&mut self.state.air, &[], &self.room, self.scale.h(), Part::WHOLE);
             self.contact.update(&self.arrangement, &self.scale);
             self.ghosts.update(&self.arrangement, &self.scale);
         }

@@ -285,7 +285,7 @@ impl Boundaries {
 pub(super) fn lowest_of(of_faces: &[Option<u16>], solver: &Solver, rule: u16) -> (f64, f64) {
     let faces = || own_faces_of(of_faces, solver, rule).map(|(_, cell, length)| (solver.mesh.bed[cell], length));
     let lowest = faces().map(|(bed, _)| bed).fold(f64::INFINITY, f64::min);
-    let lowest = solver.domain.as_ref().map_or(lowest, |domain| domain.least(lowest));
+    let lowest = solver.domain.as_ref().map_or(lowest, |domain| domain.processes.least(lowest));
     let lengths = faces().filter(|(bed, _)| wets(*bed, lowest)).map(|(_, length)| length).collect();
     (lowest, total_of(solver.domain.as_ref(), lengths))
 }

@@ -5,13 +5,11 @@
 //! ([`Domain::exchange`]). Cells stand in the order in which all processes together made the tiles, so that faces have the same direction
 //! everywhere, and all sums over cells are exact: results have the same bits for any number of processes.
 //!
-//! `commands.rs` has the commands of the first process to the others, `tiles.rs` gathers and distributes the state by tiles.
+//! `tiles.rs` gathers and distributes the state by tiles.
 
-mod commands;
 mod curve;
 mod tiles;
 
-pub(super) use commands::Command;
 pub(super) use tiles::Counts;
 
 use super::local;
@@ -19,10 +17,9 @@ use super::mesh::{Layout, Mesh};
 use super::solver::Solver;
 use super::water::{Column, Water};
 use corpuscle_model::{ExactSum, ModelError};
-use corpuscle_processes::{Link, Processes};
+use corpuscle_processes::{Lead, Processes};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::sync::Arc;
 
 /// How many cells away from its own a process needs the water: the flux between an own cell and its neighbour depends on whether the neighbour can
 /// give as much through all of its faces, these on the slopes of the neighbours' neighbours, and these on the water beside them.
@@ -43,7 +40,7 @@ type CellsByProcess = Vec<(usize, Vec<u32>)>;
 
 /// The part of a process, and its connections to the others.
 pub(crate) struct Domain {
-    link: Arc<dyn Link>,
+    pub processes: Processes,
     /// How many cells away from its own the water is needed.
     layers: usize,
     /// The process of each tile.
@@ -62,17 +59,17 @@ pub(crate) struct Domain {
     incoming: Vec<(usize, Vec<f64>)>,
     /// Number of wet cells of all processes after the last step.
     pub wet: usize,
-    /// Whether the flood is set up, so that the other processes wait for commands.
-    is_open: bool,
+    /// Set where the flood is set up, so that the other processes wait for commands.
+    lead: Option<Lead>,
 }
 
 impl Domain {
     /// The part of a process in a layout without cells; none where it is alone.
     pub fn new(processes: &Processes, layout: &Layout, has_local_steps: bool) -> Option<Self> {
-        let link = processes.link()?;
+        let count = processes.link()?.count();
         let tiles = layout.tiles[0] * layout.tiles[1];
         let mut domain = Self {
-            link: Arc::clone(link),
+            processes: processes.clone(),
             layers: if has_local_steps { LAYERS_OF_LOCAL_STEPS } else { LAYERS },
             owners: Vec::new(),
             keeps: Vec::new(),
@@ -84,16 +81,16 @@ impl Domain {
             outgoing: Vec::new(),
             incoming: Vec::new(),
             wet: 0,
-            is_open: false,
+            lead: None,
         };
-        domain.assign(layout, curve::owners(layout.tiles, &vec![1.0; tiles], link.count()));
+        domain.assign(layout, curve::owners(layout.tiles, &vec![1.0; tiles], count));
         Some(domain)
     }
 
     /// Gives tiles to processes. There must be no cells yet.
     pub fn assign(&mut self, layout: &Layout, owners: Vec<u16>) {
         self.owners = owners;
-        self.keeps = kept_by(self.link.rank(), &self.owners, layout, self.rings());
+        self.keeps = kept_by(self.processes.rank(), &self.owners, layout, self.rings());
     }
 
     /// How many tiles round its own a process keeps.
@@ -112,11 +109,16 @@ impl Domain {
 
     /// From here on the other processes wait for commands.
     pub fn open(&mut self) {
-        self.is_open = true;
+        self.lead = Some(self.processes.lead());
     }
 
     pub fn is_first(&self) -> bool {
-        self.link.rank() == 0
+        self.processes.is_first()
+    }
+
+    /// The number of processes.
+    pub fn count(&self) -> usize {
+        self.processes.count()
     }
 
     /// Whether a cell is its own. Cells that were added just now are not.
@@ -126,7 +128,7 @@ impl Domain {
     }
 
     pub fn owns_tile(&self, tile: usize) -> bool {
-        usize::from(self.owners[tile]) == self.link.rank()
+        usize::from(self.owners[tile]) == self.processes.rank()
     }
 
     /// Whether any process has made a tile.
@@ -151,29 +153,11 @@ impl Domain {
     }
 
     /// The elements of all processes' lists, in order, each once.
-    pub fn union(&self, own: &[usize]) -> Vec<usize> {
-        let mut all: Vec<usize> = self.gather_all::<Vec<usize>>(&own).into_iter().flatten().collect();
+    pub fn union(&self, own: Vec<usize>) -> Vec<usize> {
+        let mut all: Vec<usize> = self.processes.gather_all(own).into_iter().flatten().collect();
         all.sort_unstable();
         all.dedup();
         all
-    }
-
-    /// What each process gives, in their order.
-    pub fn gather_all<T: DeserializeOwned>(&self, own: &impl Serialize) -> Vec<T> {
-        let all = self.link.all_gather(&to_bytes(own));
-        all.iter().map(|bytes| from_bytes(bytes)).collect()
-    }
-
-    /// What each process gives, at the first; nothing at others.
-    pub fn gather<T: DeserializeOwned>(&self, own: &impl Serialize) -> Vec<T> {
-        let own = to_bytes(own);
-        if !self.is_first() {
-            self.link.send_receive(&[(0, &own)], &[]);
-            return Vec::new();
-        }
-        let others: Vec<usize> = (1..self.link.count()).collect();
-        let all = std::iter::once(own).chain(self.link.send_receive(&[], &others));
-        all.map(|bytes| from_bytes(&bytes)).collect()
     }
 
     /// Brings the values of a map that processes have found to the first.
@@ -183,21 +167,9 @@ impl Domain {
         is_found: impl Fn(&T) -> bool,
     ) {
         let own: Vec<(usize, T)> = values.iter().copied().enumerate().filter(|(_, value)| is_found(value)).collect();
-        for (pixel, value) in self.gather::<Vec<(usize, T)>>(&own).into_iter().flatten() {
+        for (pixel, value) in self.processes.gather(own).into_iter().flatten() {
             values[pixel] = value;
         }
-    }
-
-    /// Sends something to some processes, and receives what others send, with the process it comes from.
-    fn swap<T: DeserializeOwned>(&self, outgoing: Vec<(usize, impl Serialize)>) -> Vec<(usize, T)> {
-        let to: Vec<usize> = outgoing.iter().map(|(to, _)| *to).collect();
-        let all: Vec<Vec<usize>> = self.gather_all(&to);
-        let senders = all.iter().enumerate().filter(|(_, to)| to.contains(&self.link.rank()));
-        let from: Vec<usize> = senders.map(|(from, _)| from).collect();
-        let bytes: Vec<_> = outgoing.into_iter().map(|(to, what)| (to, to_bytes(&what))).collect();
-        let outgoing: Vec<_> = bytes.iter().map(|(to, bytes)| (*to, &bytes[..])).collect();
-        let received = self.link.send_receive(&outgoing, &from);
-        from.into_iter().zip(received).map(|(from, bytes)| (from, from_bytes(&bytes))).collect()
     }
 
     /// Finds which cells of others are needed here, and which of here elsewhere.
@@ -213,7 +185,7 @@ impl Domain {
         }
         wanted.sort_unstable_by_key(|(process, _)| *process);
         let points = |cells: &[u32]| cells.iter().map(|cell| mesh.point[*cell as usize]).collect::<Vec<u64>>();
-        let asked = self.swap(wanted.iter().map(|(process, cells)| (*process, points(cells))).collect());
+        let asked = self.processes.swap(wanted.iter().map(|(process, cells)| (*process, points(cells))).collect());
         let cells =
             |points: Vec<u64>| points.into_iter().filter_map(|point| mesh.cell_of(point)).map(|cell| cell as u32);
         self.sent =
@@ -270,7 +242,9 @@ impl Domain {
                 numbers.copy_from_slice(&[volume, p, q]);
             }
         }
-        self.link.exchange(&self.outgoing, &mut self.incoming);
+        if let Some(link) = self.processes.link() {
+            link.exchange(&self.outgoing, &mut self.incoming);
+        }
         for ((_, numbers), (_, cells)) in self.incoming.iter().zip(&self.received) {
             for (numbers, cell) in numbers.chunks_exact(NUMBERS).zip(cells) {
                 let cell = *cell as usize;
@@ -279,30 +253,13 @@ impl Domain {
         }
     }
 
-    /// Replaces counts and sums by those over all processes.
-    pub fn total(&self, counts: &mut [i64], sums: &mut [&mut ExactSum]) {
-        let mut all = counts.to_vec();
-        sums.iter().for_each(|sum| all.extend(sum.addends()));
-        self.link.sum(&mut all);
-        let (of_counts, of_sums) = all.split_at(counts.len());
-        counts.copy_from_slice(of_counts);
-        for (sum, addends) in sums.iter_mut().zip(of_sums.as_chunks().0) {
-            **sum = ExactSum::of_addends(addends);
-        }
-    }
-
     /// Replaces each level by the highest of all processes.
     pub fn most(&self, levels: &mut [u8]) {
         let mut least: Vec<f64> = levels.iter().map(|level| -f64::from(*level)).collect();
-        self.link.min(&mut least);
+        if let Some(link) = self.processes.link() {
+            link.min(&mut least);
+        }
         levels.iter_mut().zip(least).for_each(|(level, least)| *level = -least as u8);
-    }
-
-    /// The least of a value over all processes.
-    pub fn least(&self, value: f64) -> f64 {
-        let mut least = [value];
-        self.link.min(&mut least);
-        least[0]
     }
 }
 
@@ -319,19 +276,10 @@ fn kept_by(process: usize, owners: &[u16], layout: &Layout, rings: usize) -> Vec
     keeps
 }
 
-fn to_bytes(what: &impl Serialize) -> Vec<u8> {
-    postcard::to_stdvec(what).unwrap_or_default()
-}
-
-/// What another process sent: of the type that it sent, or the processes do different things.
-fn from_bytes<T: DeserializeOwned>(bytes: &[u8]) -> T {
-    postcard::from_bytes(bytes).unwrap_or_else(|error| panic!("a message of another process is damaged: {error}"))
-}
-
 /// Replaces counts and sums by those over all processes, if there are several.
 pub(crate) fn total(domain: Option<&Domain>, counts: &mut [i64], sums: &mut [&mut ExactSum]) {
     if let Some(domain) = domain {
-        domain.total(counts, sums);
+        domain.processes.total(counts, sums);
     }
 }
 
@@ -351,7 +299,7 @@ pub(crate) fn any(domain: Option<&Domain>, holds: bool) -> bool {
 /// An error of any process, at all of them.
 pub(crate) fn agreed<T>(domain: Option<&Domain>, result: Result<T, ModelError>) -> Result<T, ModelError> {
     match domain {
-        Some(domain) => Processes::of(Arc::clone(&domain.link)).agree(result, ModelError::Setup),
+        Some(domain) => domain.processes.agree(result, ModelError::Setup),
         None => result,
     }
 }

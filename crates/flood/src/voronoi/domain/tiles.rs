@@ -137,7 +137,7 @@ impl VoronoiFlood {
         let [sent, received] = domain.shared();
         let states = |cells: &[u32]| cells.iter().map(|cell| self.cell_state(*cell as usize)).collect::<Vec<_>>();
         let outgoing = sent.iter().map(|(process, cells)| (*process, states(cells))).collect();
-        let incoming: Vec<(usize, Vec<CellState>)> = domain.swap(outgoing);
+        let incoming: Vec<(usize, Vec<CellState>)> = domain.processes.swap(outgoing);
         let ghosts: Vec<usize> = received.iter().flat_map(|(_, cells)| cells).map(|cell| *cell as usize).collect();
         self.solver.domain = Some(domain);
         for (cell, state) in ghosts.into_iter().zip(incoming.into_iter().flat_map(|(_, states)| states)) {
@@ -186,7 +186,7 @@ impl VoronoiFlood {
         let own = self.cells_of_tiles().into_iter().filter(|(tile, _)| domain.owns_tile(*tile as usize));
         let own: Vec<(u32, f64)> = own.map(|(tile, cells)| (tile, wet(&cells) as f64)).collect();
         let mut work = vec![0.0; domain.owners.len()];
-        for (tile, of_tile) in domain.gather_all::<Vec<(u32, f64)>>(&own).into_iter().flatten() {
+        for (tile, of_tile) in domain.processes.gather_all(own).into_iter().flatten() {
             work[tile as usize] = of_tile;
         }
         let owners = curve::owners(self.solver.mesh.layout.tiles, &work, domain.count());
@@ -214,7 +214,7 @@ impl VoronoiFlood {
             (process, states.iter().filter(|state| keeps[state.tile as usize]).collect::<Vec<_>>())
         };
         let outgoing = (0..domain.count()).map(of_process).filter(|(_, states)| !states.is_empty()).collect();
-        let incoming: Vec<(usize, Vec<TileState>)> = domain.swap(outgoing);
+        let incoming: Vec<(usize, Vec<TileState>)> = domain.processes.swap(outgoing);
         incoming.into_iter().flat_map(|(_, states)| states).collect()
     }
 
@@ -267,7 +267,7 @@ impl VoronoiFlood {
         let mut order = vec![0; domain.is_made.len()];
         domain.made.iter().enumerate().for_each(|(k, tile)| order[*tile as usize] = k);
         let mut all: Vec<TileState> =
-            domain.gather::<Vec<TileState>>(&self.own_tile_states(domain)).into_iter().flatten().collect();
+            domain.processes.gather(self.own_tile_states(domain)).into_iter().flatten().collect();
         all.sort_unstable_by_key(|of_tile| order[of_tile.tile as usize]);
         let count =
             |of_tile: &TileState| Counts { cells: of_tile.columns.len() as u32, borders: of_tile.beyond.len() as u32 };

@@ -5,9 +5,9 @@ use super::super::domain::Domain;
 use super::super::local::Local;
 use super::super::mesh::{Face, Mesh, SOLID};
 use super::super::reconstruction::{Faces, at_side, at_wall, differences};
-use super::super::sums::{ROUNDERS, ReproducibleSum};
 use super::super::water::{DEPTH, LEVEL, Slopes, Water};
 use super::{Crossings, Flux, between};
+use corpuscle_model::{ROUNDERS, ReproducibleSum};
 use corpuscle_simd::{LANES, Lanes, LanesExt, Select, Simd, SimdBase, SimdFloat, SimdFrom, transposed};
 
 /// What fluxes are found from.

@@ -1,0 +1,238 @@
+//! The part of the air that one of several processes computes, and what it exchanges with the others.
+//!
+//! The room is divided into tiles, each of which belongs to a process (`tiles.rs`). A process has the air in its tiles, and copies of the air
+//! of others within reach of it (`halo.rs`). Solids are whole at every process, their temperatures, the water and the drops on them: each process finds what air and
+//! solids exchange in its tiles (`solids.rs`), all tell each other, and what follows from it is the same everywhere. Neighbours stand in the same order at every process,
+//! and sums over the air are exact: results have the same bits for any number of processes.
+
+mod halo;
+mod solids;
+mod tiles;
+
+pub(crate) use halo::Halo;
+pub use halo::HaloParticle;
+
+use crate::air::{Part, Particle, Role};
+use crate::dew::Dew;
+use crate::normalisation::Tensor;
+use crate::room::Room;
+use crate::solids::Site;
+use bytemuck::Pod;
+use corpuscle_model::{Account, ExactSum};
+use corpuscle_processes::{Lead, Link, Processes};
+use halo::Distribution;
+use std::sync::Arc;
+use tiles::Tiles;
+
+/// Largest load of a process over the mean; above it tiles move.
+const MAX_IMBALANCE: f64 = 1.1;
+
+/// Steps between two checks of the load.
+const STEPS_BETWEEN_BALANCING: u64 = 64;
+
+/// Room for rounding where a part ends, over the reach.
+const MARGIN: f64 = 1e-6;
+
+/// The part of a process, and its connections to the others.
+pub(crate) struct Domain {
+    link: Arc<dyn Link>,
+    tiles: Tiles,
+    /// The process of each tile.
+    owners: Vec<u16>,
+    /// Whether all tiles round each are its process's own.
+    is_inner: Vec<bool>,
+    /// The processes that have tiles beside the own, in order.
+    beside: Vec<usize>,
+    pub halo: Halo,
+    /// The part of the room within reach of the own air.
+    pub part: Part,
+    /// Particles of air of all processes, and those of them in the room.
+    pub air: [usize; 2],
+    /// Set where the model is set up, so that the other processes wait for commands.
+    lead: Option<Lead>,
+}
+
+impl Domain {
+    /// The part of a process of a room whose air has such a reach, m; none where it is alone.
+    pub fn new(processes: &Processes, room: &Room, reach: f64) -> Option<Self> {
+        let link = processes.link()?;
+        let tiles = Tiles::new(room, reach);
+        let mut domain = Self {
+            link: Arc::clone(link),
+            owners: Vec::new(),
+            is_inner: Vec::new(),
+            beside: Vec::new(),
+            halo: Halo::default(),
+            part: Part::WHOLE,
+            air: [0; 2],
+            lead: None,
+            tiles,
+        };
+        domain.distribute(&vec![1.0; domain.tiles.len()], room, reach);
+        Some(domain)
+    }
+
+    /// Distributes the tiles anew, by the work in each. The air moves when it is shared next.
+    fn distribute(&mut self, work: &[f64], room: &Room, reach: f64) {
+        self.owners = tiles::owners(self.tiles.counts, work, self.link.count());
+        let own = self.link.rank();
+        let is_own = |tile: usize| usize::from(self.owners[tile]) == own;
+        self.is_inner = vec![false; self.tiles.len()];
+        self.beside.clear();
+        for tile in (0..self.tiles.len()).filter(|tile| is_own(*tile)) {
+            self.is_inner[tile] = self.tiles.round(tile).all(is_own);
+            self.beside.extend(self.tiles.round(tile).map(|near| usize::from(self.owners[near])));
+        }
+        self.beside.sort_unstable();
+        self.beside.dedup();
+        self.beside.retain(|process| *process != own);
+        let bounds = self.tiles.bounds((0..self.tiles.len()).filter(|tile| is_own(*tile)));
+        let margin = (1.0 + MARGIN) * reach;
+        self.part = bounds.map_or(Part([room.low; 2]), |[low, high]| {
+            Part([low.map(|corner| corner - margin), high.map(|corner| corner + margin)])
+        });
+    }
+
+    fn owner(&self, position: [f64; 3]) -> usize {
+        usize::from(self.owners[self.tiles.of(position)])
+    }
+
+    /// Whether this process computes what is at a position.
+    pub fn owns(&self, position: [f64; 3]) -> bool {
+        self.owner(position) == self.link.rank()
+    }
+
+    /// Whether this process finds what a site of a solid gets.
+    pub fn owns_site(&self, site: &Site) -> bool {
+        self.owns(site.position)
+    }
+
+    /// Sends the air that has left this part to its processes, takes what has come, and fills the halo, whose velocities are taken `ahead` s on.
+    fn share(&mut self, processes: &Processes, air: &mut Vec<Particle>, room: &Room, reach: f64, ahead: f64) {
+        let mut outgoing: Vec<(usize, Vec<Particle>)> = Vec::new();
+        air.retain(|particle| {
+            let owner = self.owner(particle.position);
+            let stays = owner == self.link.rank();
+            if !stays {
+                match outgoing.iter_mut().find(|(process, _)| *process == owner) {
+                    Some((_, particles)) => particles.push(*particle),
+                    None => outgoing.push((owner, vec![*particle])),
+                }
+            }
+            stays
+        });
+        let incoming: Vec<(usize, Vec<Particle>)> = processes.swap(outgoing);
+        air.extend(incoming.into_iter().flat_map(|(_, particles)| particles));
+        self.air = total_of(processes, air);
+        let Self { link, tiles, owners, is_inner, beside, halo, .. } = self;
+        halo.fill(&**link, &Distribution { tiles, owners, is_inner, beside }, air, room, reach, ahead);
+    }
+
+    /// Exchanges densities and tensors of the air that was shared and then arranged.
+    pub fn exchange(&mut self, air: &[Particle], new_number: &[u32], tensors: &mut Vec<Tensor>) {
+        self.halo.exchange(&*self.link, air, new_number, tensors);
+    }
+
+    /// Number of particles in each tile.
+    fn work(&self, air: &[Particle]) -> Vec<i64> {
+        let mut work = vec![0; self.tiles.len()];
+        air.iter().for_each(|particle| work[self.tiles.of(particle.position)] += 1);
+        work
+    }
+
+    /// Load of the busiest process over the mean; 1 where there is none.
+    fn imbalance(&self, work: &[f64]) -> f64 {
+        let mut sums = vec![0.0; self.link.count()];
+        self.owners.iter().zip(work).for_each(|(owner, work)| sums[usize::from(*owner)] += work);
+        let total: f64 = sums.iter().sum();
+        if total > 0.0 { sums.iter().copied().fold(0.0, f64::max) * sums.len() as f64 / total } else { 1.0 }
+    }
+}
+
+/// What was sent as bytes, which need not be aligned.
+fn from_bytes<T: Pod>(bytes: &[u8]) -> Vec<T> {
+    bytes.chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect()
+}
+
+/// Particles of air, and those in the room, of all processes.
+fn total_of(processes: &Processes, air: &[Particle]) -> [usize; 2] {
+    let inside = air.iter().filter(|particle| particle.role == Role::Inside).count();
+    let mut counts = [air.len(), inside].map(|count| count as i64);
+    processes.total(&mut counts, &mut []);
+    counts.map(|count| count as usize)
+}
+
+impl Dew {
+    /// From here on the other processes wait for commands of the first, whose model is called: see [`Processes::follow`].
+    pub fn lead(&mut self) {
+        if let Some(domain) = &mut self.domain {
+            domain.lead = Some(self.processes.lead());
+        }
+    }
+
+    /// Whether what is at a position is computed by this process.
+    pub(crate) fn owns(&self, position: [f64; 3]) -> bool {
+        self.domain.as_ref().is_none_or(|domain| domain.owns(position))
+    }
+
+    /// Distributes the air over the processes as it stands, and fills the halo, whose velocities are taken `ahead` s on.
+    pub(crate) fn share_air(&mut self, ahead: f64) {
+        if let Some(domain) = &mut self.domain {
+            domain.share(&self.processes, &mut self.state.air, &self.room, self.scale.h(), ahead);
+        }
+    }
+
+    /// Particles of air of all processes.
+    pub(crate) fn air_count(&self) -> usize {
+        self.domain.as_ref().map_or(self.state.air.len(), |domain| domain.air[0])
+    }
+
+    /// Particles of air in the room, of all processes.
+    pub(crate) fn inside_count(&self) -> usize {
+        self.domain.as_ref().map_or_else(|| self.inside().count(), |domain| domain.air[1])
+    }
+
+    /// Moves tiles to other processes where the work is distributed too unevenly; looks at it every so many steps.
+    pub(crate) fn balance_if_due(&mut self) {
+        if self.state.steps.is_multiple_of(STEPS_BETWEEN_BALANCING) {
+            self.balance();
+        }
+    }
+
+    /// Moves tiles to other processes where the work is distributed too unevenly.
+    pub(crate) fn balance(&mut self) {
+        let Some(domain) = &mut self.domain else { return };
+        let mut work = domain.work(&self.state.air);
+        self.processes.total(&mut work, &mut []);
+        let work: Vec<f64> = work.into_iter().map(|count| count as f64).collect();
+        if domain.imbalance(&work) > MAX_IMBALANCE {
+            domain.distribute(&work, &self.room, self.scale.h());
+        }
+    }
+
+    /// Keeps of the whole air, which all processes have, the part of this one.
+    pub(crate) fn keep_part(&mut self) {
+        let Some(domain) = &mut self.domain else { return };
+        let air = &mut self.state.air;
+        let inside = air.iter().filter(|particle| particle.role == Role::Inside).count();
+        domain.air = [air.len(), inside];
+        let work: Vec<f64> = domain.work(air).into_iter().map(|count| count as f64).collect();
+        domain.distribute(&work, &self.room, self.scale.h());
+        air.retain(|particle| domain.owns(particle.position));
+        // What was booked stands at the first process.
+        if !self.processes.is_first() {
+            for account in [&mut self.state.water, &mut self.state.energy] {
+                *account = Account { initial: account.initial, ..Account::default() };
+            }
+            self.state.fogged = ExactSum::default();
+        }
+    }
+
+    /// The accounts of water and energy, and the fog that has formed, of all processes.
+    pub(crate) fn booked(&self) -> ([Account; 2], ExactSum) {
+        let (mut accounts, mut fogged) = ([self.state.water, self.state.energy], self.state.fogged);
+        let of_accounts = accounts.iter_mut().flat_map(|account| [&mut account.inflow, &mut account.outflow]);
+        self.processes.total(&mut [], &mut of_accounts.chain([&mut fogged]).collect::<Vec<_>>());
+        (accounts, fogged)
+    }
+}
