@@ -21,8 +21,7 @@ impl Dew {
 
     fn air_set(&self) -> ParticleSet {
         let since = self.since();
-        let mut order: Vec<Particle> =
-            self.processes.gather(self.inside().copied().collect::<Vec<_>>()).into_iter().flatten().collect();
+        let mut order = self.processes.gather_list(self.inside().copied().collect());
         order.sort_unstable_by_key(|particle| particle.id);
         let scalar = |of: &dyn Fn(&Particle) -> f64| Values::Scalar(order.iter().map(of).collect());
         let humidity = |particle: &Particle| {
@@ -87,10 +86,7 @@ impl Model for Dew {
 
     #[cfg(feature = "gpu")]
     fn cpu_only(&self) -> Option<CpuOnly> {
-        self.domain.as_ref().map(|_| CpuOnly {
-            what: "several processes compute dew on CPUs",
-            remedy: "leave `--backend gpu` out, or start the run without `mpirun`",
-        })
+        self.on_cpu_only()
     }
 
     #[cfg(feature = "gpu")]
@@ -203,7 +199,7 @@ impl Model for Dew {
         self.processes.broadcast(&Command::Save);
         let mut state = self.state.clone();
         ([state.water, state.energy], state.fogged) = self.booked();
-        state.air = self.processes.gather(std::mem::take(&mut state.air)).into_iter().flatten().collect();
+        state.air = self.processes.gather_list(std::mem::take(&mut state.air));
         state.air.sort_unstable_by_key(|particle| particle.id);
         postcard::to_stdvec(&(self.shown, &state, self.wetting.as_ref().map(Wetting::state))).unwrap_or_default()
     }
@@ -223,6 +219,9 @@ impl Model for Dew {
         {
             return Err(refused("it belongs to another scene".into()));
         }
+        if self.domain.is_some() && state.overrides.is_some() {
+            return Err(refused("dew was changed while it ran: resume it without `mpirun`".into()));
+        }
         let fits = match (&mut self.wetting, drops) {
             (None, None) => true,
             (Some(wetting), Some(drops)) => wetting.restore(drops),
@@ -230,9 +229,6 @@ impl Model for Dew {
         };
         if !fits {
             return Err(refused("it belongs to another scene".into()));
-        }
-        if self.domain.is_some() && state.overrides.is_some() {
-            return Err(refused("dew was changed while it ran: resume it without `mpirun`".into()));
         }
         (self.shown, self.state) = (shown, state);
         self.keep_part();

@@ -241,4 +241,16 @@ fn what_cannot_be_is_refused() {
     let change = LiveChange::TimeFactor(2.0);
     let error = on(2, 1, CLOSED, |dew| change.change(&mut dew.unwrap()).unwrap_err().to_string());
     assert!(error.contains("several processes"), "{error}");
+    // A state with a change is resumed by one process only: nothing of it is taken.
+    let changed = on(1, 1, CLOSED, |dew| {
+        let mut dew = dew.unwrap();
+        change.change(&mut dew).unwrap();
+        dew.save()
+    });
+    let (error, is_kept) = on(2, 1, CLOSED, |dew| {
+        let mut dew = dew.unwrap();
+        let before = dew.save();
+        (dew.restore(&changed).unwrap_err().to_string(), dew.save() == before)
+    });
+    assert!(error.contains("changed while it ran") && is_kept, "{error}");
 }

@@ -126,6 +126,14 @@ impl Processes {
         std::iter::once(own).chain(received.iter().map(|bytes| from_bytes(bytes))).collect()
     }
 
+    /// The elements of all processes' lists, by their processes, at the first; nothing at others.
+    pub fn gather_list<T: Serialize + DeserializeOwned>(&self, own: Vec<T>) -> Vec<T> {
+        match self.link() {
+            None => own,
+            Some(_) => self.gather(own).into_iter().flatten().collect(),
+        }
+    }
+
     /// Sends something to some processes, and receives what others send, with the process that it comes from.
     pub fn swap<T: DeserializeOwned>(&self, outgoing: Vec<(usize, impl Serialize)>) -> Vec<(usize, T)> {
         let Some(link) = self.link() else { return Vec::new() };

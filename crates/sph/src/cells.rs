@@ -220,6 +220,42 @@ mod tests {
     }
 
     proptest! {
+        /// In a part of the room, with its own particles in another order and some of those beyond it, neighbours are those in the whole and in the same order.
+        #[test]
+        fn neighbours_in_a_part_are_those_in_the_whole(
+            places in prop::collection::vec(prop::array::uniform3(0.0..8.0f64), 1..300),
+            corners in prop::array::uniform3((0.0..8.0f64, 0.0..8.0f64)),
+            low in prop::array::uniform3(-3.0..0.0f64),
+            reach in 0.3..2.0f64,
+        ) {
+            let part = [corners.map(|(a, b)| a.min(b)), corners.map(|(a, b)| a.max(b))];
+            let is_in = |place: &[f64; 3], more: f64| {
+                (0..3).all(|axis| (part[0][axis] - more..=part[1][axis] + more).contains(&place[axis]))
+            };
+            let all: Vec<(u64, [f64; 3])> = (0..).zip(places).collect();
+            let near: Vec<_> = all.iter().rev().copied().filter(|(_, place)| is_in(place, 1.5 * reach)).collect();
+            // Identities of the neighbours of each particle of the part, in order.
+            let neighbours = |of: &[(u64, [f64; 3])], bounds: [[f64; 3]; 2]| {
+                let column = |axis: usize| of.iter().map(|(_, place)| place[axis]).collect::<Vec<f64>>();
+                let columns: [Vec<f64>; 3] = std::array::from_fn(column);
+                let mut cells = Cells::<3>::default();
+                cells.sort_part(columns.each_ref().map(|column| &column[..]), Cells::<3>::sizes_for(reach), low, bounds);
+                let order = cells.sort_each_cell_by(|particle| of[particle as usize].0).to_vec();
+                let mut found = std::collections::BTreeMap::new();
+                for (id, place) in of.iter().filter(|(_, place)| is_in(place, 0.0)) {
+                    let candidates = cells.ranges_within(*place, reach).flatten().map(|at| of[order[at] as usize]);
+                    let squared = |other: [f64; 3]| (0..3).map(|axis| (other[axis] - place[axis]).powi(2)).sum::<f64>();
+                    let within: Vec<u64> =
+                        candidates.filter(|(_, other)| squared(*other) < reach * reach).map(|(id, _)| id).collect();
+                    found.insert(*id, (cells.numbers_at(*place), within));
+                }
+                found
+            };
+            let with_reach = [part[0].map(|at| (at - reach).max(-3.0)), part[1].map(|at| at + reach)];
+            let lowest = std::array::from_fn(|axis| with_reach[0][axis].max(low[axis]));
+            prop_assert_eq!(neighbours(&near, [lowest, with_reach[1]]), neighbours(&all, [low, [8.0; 3]]));
+        }
+
         #[test]
         fn ranges_cover_all_within_reach(
             places in prop::collection::vec(prop::array::uniform3(-5.0..8.0f64), 1..200),

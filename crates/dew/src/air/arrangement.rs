@@ -68,7 +68,7 @@ impl Part {
     }
 }
 
-/// How far beyond the faces of a room particles and their images stand at most, m: its lowest and its highest corner moved by as much.
+/// The box that holds a room and all particles and images beyond its faces: its lowest and its highest corner, m.
 fn with_what_is_beyond(room: &Room, reach: f64) -> [[f64; 3]; 2] {
     let margin = |face: &Face| if face.is_passed() { (BEYOND + 1.0) * reach } else { reach };
     let end = |side: usize, sign: f64| {

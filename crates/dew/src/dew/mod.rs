@@ -165,8 +165,8 @@ impl Dew {
         Self::new_on(&Processes::alone(), setup, start)
     }
 
-    /// As [`Dew::new`], with the air distributed over processes: all of them call it, and what sums over the air, together. Where other processes
-    /// [follow](Processes::follow) the first from here on, [`Dew::lead`] says so.
+    /// As [`Dew::new`], with the air distributed over processes, which all call this, and all that sets the model up. Then all call [`Dew::lead`], and those that
+    /// are not the first [follow](Processes::follow) it.
     ///
     /// # Errors
     /// As [`Dew::new`].
@@ -284,6 +284,7 @@ impl Dew {
         self.drift(step);
         self.cross_faces(step);
         self.update_utility();
+        self.balance_if_due();
         self.evaluate(0.5 * step);
         let drift = std::mem::take(&mut self.state.drift);
         self.exchange(step);
@@ -294,7 +295,6 @@ impl Dew {
         self.state.particle_steps += self.air_count() as u64;
         self.hold();
         self.update_drops(self.air_count());
-        self.balance_if_due();
         let next = self.next_step(&self.work.stiff, extremes);
         self.state.time_step = next;
         self.check_step(extremes.speed_squared.sqrt(), step, next)
@@ -403,7 +403,7 @@ impl Dew {
         of_air.value()
     }
 
-    /// Gives the air in the room velocities, m/s, by place.
+    /// Gives the air in the room velocities, m/s, by place. Where several processes share the air all of them call this.
     pub fn stir(&mut self, velocity: impl Fn([f64; 3]) -> [f64; 3]) {
         let slowest = self.slowest();
         for particle in &mut self.state.air {
@@ -424,7 +424,7 @@ impl Dew {
         self.state.time_step = self.next_step(&[], self.extremes());
     }
 
-    /// Lays water on the boundary particles of a body, in kg/m2, as there from the start.
+    /// Lays water on the boundary particles of a body, in kg/m2, as there from the start. Where several processes share the air all of them call this.
     pub fn wet(&mut self, body: usize, amount: f64) {
         for (particle, water) in self.solids.particles.iter().zip(&mut self.state.water_on) {
             if particle.body as usize == body && particle.normal.is_some() {
@@ -490,7 +490,9 @@ impl Dew {
             + self.rates.capacity() * size_of::<Rates>()
             + self.sums.capacity() * size_of::<Sums>()
             + self.tensors.capacity() * size_of::<Tensor>();
-        air + work + self.arrangement.bytes() + self.contact.bytes() + self.ghosts.bytes() + self.conduction.bytes()
+        let shared = self.domain.as_ref().map_or(0, Domain::bytes);
+        let near_solids = self.contact.bytes() + self.ghosts.bytes() + self.conduction.bytes();
+        air + work + shared + self.arrangement.bytes() + near_solids
     }
 
     pub(crate) fn scale(&self) -> &Scale {

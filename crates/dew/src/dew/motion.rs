@@ -39,6 +39,9 @@ impl Extremes {
 
     /// The largest of all processes.
     fn of_all(self, processes: &Processes) -> Self {
+        if processes.count() == 1 {
+            return self;
+        }
         let Self { speed_squared, acceleration_squared, diffusion } = self;
         let all = processes.gather_all([speed_squared, acceleration_squared, diffusion]);
         let of = |[speed_squared, acceleration_squared, diffusion]: [f64; 3]| Self {

@@ -23,7 +23,7 @@ const SCATTER_TRIES: u32 = 30;
 
 impl Dew {
     /// Moves the air in the room to random places outside of solids, as there from the start; `start` gives temperature, K, and
-    /// vapour, part of the mass, at a place.
+    /// vapour, part of the mass, at a place. Where several processes share the air all of them call this, and positions depend on their number.
     pub fn scatter(&mut self, scatter: Scatter, start: impl Fn([f64; 3]) -> [f64; 2]) {
         let (room, reach) = (self.room, scatter.reach * self.scale.spacing);
         let known = || self.surfaces.iter().cloned().map(Some);

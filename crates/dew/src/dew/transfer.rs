@@ -10,6 +10,9 @@ use crate::solids::Site;
 use corpuscle_model::ExactSum;
 use rayon::prelude::*;
 
+/// Particles that are summed up on one thread.
+const SUMMED_TOGETHER: usize = 4096;
+
 /// Water that a particle of air deposits: its order among the air of all processes, the water, kg, and the shares of boundary particles.
 type Deposit = (([usize; 3], u64), f64, Vec<(u32, f64)>);
 
@@ -117,8 +120,9 @@ impl Dew {
         let energy_of = |warming: f64, moistening: f64| {
             mass * step * (self.air.heat_capacity * warming + self.latent_heat * moistening)
         };
-        let add = |mut sums: [ExactSum; 2], (particle, rates): (&Particle, &Rates)| {
-            if particle.role == Role::Inside {
+        let sum = |(air, rates): (&[Particle], &[Rates])| {
+            let mut sums = [ExactSum::default(); 2];
+            for (_, rates) in air.iter().zip(rates).filter(|(particle, _)| particle.role == Role::Inside) {
                 sums[0].add(mass * step * rates.moistening);
                 sums[1].add(energy_of(rates.warming, rates.moistening));
             }
@@ -128,8 +132,8 @@ impl Dew {
             sums.iter_mut().zip(&others).for_each(|(sum, other)| sum.add_sum(other));
             sums
         };
-        let own = air.par_iter().zip(&self.rates).with_min_len(4096).fold(<[ExactSum; 2]>::default, add);
-        let mut gained = own.reduce(<[ExactSum; 2]>::default, both);
+        let chunks = air.par_chunks(SUMMED_TOGETHER).zip(self.rates.par_chunks(SUMMED_TOGETHER));
+        let mut gained = chunks.map(sum).reduce(<[ExactSum; 2]>::default, both);
         self.processes.total(&mut [], &mut gained.each_mut());
         if self.processes.is_first() {
             water.book(gained[0].value());

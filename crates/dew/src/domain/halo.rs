@@ -50,7 +50,7 @@ pub(crate) struct Halo {
     incoming: Vec<(usize, Vec<f64>)>,
 }
 
-/// Who has what.
+/// The tiles of the room, with their processes.
 pub(super) struct Distribution<'a> {
     pub tiles: &'a Tiles,
     pub owners: &'a [u16],
@@ -105,6 +105,14 @@ impl Halo {
             self.incoming.push((*process, vec![0.0; NUMBERS * theirs.len()]));
             self.particles.extend(theirs);
         }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let numbers = |of: &[(usize, Vec<f64>)]| of.iter().map(|(_, numbers)| 8 * numbers.capacity()).sum::<usize>();
+        let sent: usize = self.sent.iter().map(|(_, numbers)| 4 * numbers.capacity()).sum();
+        let a_particle = size_of::<HaloParticle>() + size_of::<f64>() + size_of::<Tensor>();
+        a_particle * self.particles.capacity() + sent + numbers(&self.outgoing) + numbers(&self.incoming)
     }
 
     /// Exchanges what sums over neighbours have given: densities, and the tensors of the own air and, after them, of the halo. `new_number` is that of

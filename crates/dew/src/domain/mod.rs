@@ -2,7 +2,7 @@
 //!
 //! The room is divided into tiles, each of which belongs to a process (`tiles.rs`). A process has the air in its tiles, and copies of the air
 //! of others within reach of it (`halo.rs`). Solids are whole at every process, their temperatures, the water and the drops on them: each process finds what air and
-//! solids exchange in its tiles (`solids.rs`), all tell each other, and what follows from it is the same everywhere. Neighbours stand in the same order at every process,
+//! solids exchange in its tiles (`solids.rs`) and sends it to all, and what follows from it is the same everywhere. Neighbours stand in the same order at every process,
 //! and sums over the air are exact: results have the same bits for any number of processes.
 
 mod halo;
@@ -131,6 +131,11 @@ impl Domain {
     /// Exchanges densities and tensors of the air that was shared and then arranged.
     pub fn exchange(&mut self, air: &[Particle], new_number: &[u32], tensors: &mut Vec<Tensor>) {
         self.halo.exchange(&*self.link, air, new_number, tensors);
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        3 * self.tiles.len() + self.halo.bytes()
     }
 
     /// Number of particles in each tile.

@@ -1,4 +1,4 @@
-//! What air and solids exchange, found by the processes in whose tiles the solids' sites are, and told to all.
+//! What air and solids exchange, found by the processes in whose tiles the solids' sites are, and sent to all.
 
 use super::{Domain, from_bytes};
 use crate::exchange::ToSolid;

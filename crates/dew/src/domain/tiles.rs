@@ -5,7 +5,7 @@ use crate::room::Room;
 /// Tiles at most: their number does not grow with the room beyond this.
 const MOST_TILES: usize = 1 << 20;
 
-/// Equal boxes that the room is divided into, no side shorter than the reach of the air. The outermost have all that is beyond, too.
+/// Equal boxes that the room is divided into, no side shorter than the reach of the air unless the room itself is. The outermost have all that is beyond, too.
 #[derive(Debug, Clone)]
 pub(crate) struct Tiles {
     low: [f64; 3],

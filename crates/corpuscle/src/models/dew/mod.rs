@@ -19,8 +19,8 @@ use corpuscle_scene::{Dew, Scene, SceneKind};
 #[cfg(feature = "pictures")]
 use std::path::Path;
 
-/// Memory for each particle, bytes, 1242 measured by the bench `dew/plate-100k`: air, its columns, lists and pairs with solids.
-const BYTES_PER_AIR_PARTICLE: f64 = 1300.0;
+/// Memory for each particle, bytes, 1456 measured by the bench `dew/plate-100k`: air, its columns, lists and pairs with solids.
+const BYTES_PER_AIR_PARTICLE: f64 = 1500.0;
 
 /// The model kind of dew.
 pub(super) struct Kind;

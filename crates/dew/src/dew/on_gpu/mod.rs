@@ -10,7 +10,7 @@ use crate::gpu::{BatchResult, Crossed, GpuSolver, MOST_FANS};
 use crate::room::Face;
 use crate::wetting::WettingState;
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming, wait_for};
-use corpuscle_model::{Advance, AdvanceObserver, Glance, GpuModel, Model, ModelError};
+use corpuscle_model::{Advance, AdvanceObserver, CpuOnly, Glance, GpuModel, Model, ModelError};
 use on_device::FrameRequest;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -23,6 +23,9 @@ fn failed(error: &GpuError) -> ModelError {
 
 impl GpuModel for Dew {
     fn use_gpu(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+        if let Some(CpuOnly { what, remedy }) = self.on_cpu_only() {
+            return Err(ModelError::Setup(format!("{what}: {remedy}")));
+        }
         let missing = self.missing_on_gpu();
         if !missing.is_empty() {
             let what = missing.join(", ");
@@ -86,6 +89,13 @@ impl GpuModel for Dew {
 }
 
 impl Dew {
+    /// Why this dew runs on the CPU only, where it does.
+    pub(crate) fn on_cpu_only(&self) -> Option<CpuOnly> {
+        self.domain
+            .as_ref()
+            .map(|_| CpuOnly { what: "several processes compute on CPUs only", remedy: "leave `--backend gpu` out" })
+    }
+
     /// What this model has that there is no twin of on the GPU.
     fn missing_on_gpu(&self) -> Vec<&'static str> {
         let all = [(self.fans.len() > MOST_FANS as usize, "more than 1024 fans ([[dew.fan]])")];
