@@ -51,14 +51,14 @@ impl<'a> Shader<'a> {
     pub(crate) fn module(&self, gpu: &Gpu) -> wgpu::ShaderModule {
         gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(self.name),
-            source: wgpu::ShaderSource::Wgsl(self.text.as_str().into()),
+            source: wgpu::ShaderSource::Wgsl(gpu.shader_text(self.text.clone()).into()),
         })
     }
 }
 
 /// The layout of a group that shaders of this crate share; their names and texts are as for [`Shader::new`].
 pub(crate) fn layout(gpu: &Gpu, label: &'static str, group: u32, shaders: &[(&str, &str)]) -> GroupLayout {
-    let whole = |(name, text): &(&str, &str)| joined(name, text).expect("a test joins every shader");
+    let whole = |(name, text): &(&str, &str)| gpu.shader_text(joined(name, text).expect("a test joins every shader"));
     let texts: Vec<String> = shaders.iter().map(whole).collect();
     let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
     GroupLayout::new(&gpu.device, label, group, &texts).expect("the shader is valid, as a test says")
