@@ -36,7 +36,7 @@ pub fn filled<T: NoUninit>(gpu: &Gpu, label: &'static str, values: &[T]) -> Resu
 /// Numbers that shaders read and nothing but the host changes.
 pub fn uniform<T: NoUninit>(gpu: &Gpu, label: &'static str, value: &T) -> wgpu::Buffer {
     let bytes = size_of::<T>().next_multiple_of(16) as u64;
-    // Software takes it as storage: see `Gpu::shader_text`.
+    // Software takes it as storage: see `Kernel`.
     let usage = BufferUsages::UNIFORM | BufferUsages::STORAGE | BufferUsages::COPY_DST;
     let buffer = buffer(gpu, label, bytes, usage);
     gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(value));

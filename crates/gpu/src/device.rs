@@ -175,16 +175,6 @@ impl Gpu {
         GpuError::Lost { name: self.name.clone(), reason }
     }
 
-    /// The text of a shader as this device takes it. Mesa's software Vulkan puts what uniform buffers hold into its programs wherever a loop or a choice
-    /// depends on them alone, and compiles anew at each dispatch and for each picture: most of its time went there, and memory that it gives back with the
-    /// device only. What lies in a storage buffer it leaves alone; so buffers of uniforms must be allowed as storage, too.
-    pub fn shader_text(&self, text: String) -> String {
-        match self.kind {
-            GpuKind::Software => text.replace("var<uniform>", "var<storage, read>"),
-            GpuKind::Hardware => text,
-        }
-    }
-
     /// The compute pipeline that is compiled from a text; it is compiled where this device has not compiled it yet.
     pub fn computing(
         &self,
@@ -212,7 +202,7 @@ impl Gpu {
     }
 }
 
-/// The portable floor, but as much memory as there is. Software takes uniform buffers as storage besides: see `Gpu::shader_text`.
+/// The portable floor, but as much memory as there is. Software takes uniform buffers as storage besides: see `Kernel`.
 fn limits(most: &wgpu::Limits, software: bool) -> wgpu::Limits {
     let floor = wgpu::Limits::default();
     let storage = floor.max_storage_buffers_per_shader_stage;

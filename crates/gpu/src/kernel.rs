@@ -35,7 +35,7 @@ impl<B: Buffers> Kernel<B> {
     pub fn new(gpu: &Gpu, name: &'static str, text: &str, library: ShaderLibrary<'_>) -> Self {
         let complete = B::declaration().complete(name, text, library);
         let (text, used) = complete.expect("a test completes every shader");
-        let pipeline = gpu.computing(gpu.shader_text(text), |text| {
+        let pipeline = gpu.computing(for_device(gpu, text), |text| {
             let source = wgpu::ShaderSource::Wgsl(text.into());
             let module = module(gpu, wgpu::ShaderModuleDescriptor { label: Some(name), source });
             gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -79,6 +79,16 @@ fn module(gpu: &Gpu, description: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::Sha
                 wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..wgpu::ShaderRuntimeChecks::checked() };
             gpu.device.create_shader_module_trusted(description, checks)
         },
+    }
+}
+
+/// The text as a device takes it. Mesa's software Vulkan puts what uniform buffers hold into its programs wherever a loop or a choice
+/// depends on them alone, and compiles anew at each dispatch: most of its time went there, and memory that it never gives back. What
+/// lies in a storage buffer it leaves alone.
+fn for_device(gpu: &Gpu, text: String) -> String {
+    match gpu.kind {
+        GpuKind::Software => text.replace("var<uniform>", "var<storage, read>"),
+        GpuKind::Hardware => text,
     }
 }
 

@@ -7,7 +7,7 @@ pub(crate) fn instances<T: bytemuck::NoUninit>(gpu: &Gpu, label: &str, all: &[T]
     filled(gpu, label, bytemuck::cast_slice(all), wgpu::BufferUsages::VERTEX)
 }
 
-/// How buffers of uniforms are used: software takes them as storage, see [`Gpu::shader_text`].
+/// How buffers of uniforms are used: software takes those of water as storage, see `shaders.rs`.
 pub(crate) const UNIFORM: wgpu::BufferUsages = wgpu::BufferUsages::UNIFORM.union(wgpu::BufferUsages::STORAGE);
 
 /// A uniform buffer.

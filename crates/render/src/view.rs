@@ -131,7 +131,7 @@ fn group(gpu: &Gpu, layout: &GroupLayout, uniform: &CameraAndLight, shadow: &wgp
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("view"),
         size: size_of::<CameraAndLight>() as u64,
-        usage: crate::buffer::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
     gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(uniform));
