@@ -7,12 +7,9 @@ pub(crate) fn instances<T: bytemuck::NoUninit>(gpu: &Gpu, label: &str, all: &[T]
     filled(gpu, label, bytemuck::cast_slice(all), wgpu::BufferUsages::VERTEX)
 }
 
-/// How buffers of uniforms are used: software takes those of water as storage, see `shaders.rs`.
-pub(crate) const UNIFORM: wgpu::BufferUsages = wgpu::BufferUsages::UNIFORM.union(wgpu::BufferUsages::STORAGE);
-
 /// A uniform buffer.
 pub(crate) fn uniform<T: bytemuck::NoUninit>(gpu: &Gpu, label: &str, value: &T) -> wgpu::Buffer {
-    filled(gpu, label, bytemuck::bytes_of(value), UNIFORM)
+    filled(gpu, label, bytemuck::bytes_of(value), wgpu::BufferUsages::UNIFORM)
 }
 
 /// A buffer of things that shaders read by their number.

@@ -1,7 +1,7 @@
 //! The modules that shaders of this crate import.
 
 use crate::shared::declared;
-use corpuscle_gpu::{DECLARED, Gpu, GpuKind, GroupLayout, ImportError, join, wgpu};
+use corpuscle_gpu::{DECLARED, Gpu, GroupLayout, ImportError, join, wgpu};
 
 /// Pieces by name: see `#import`.
 const LIBRARY: [(&str, &str); 20] = [
@@ -34,15 +34,6 @@ fn joined(name: &str, text: &str) -> Result<String, ImportError> {
     join(name, text, &library)
 }
 
-/// The text of a shader as a device takes it. Mesa's software Vulkan compiles the shaders of water anew for each picture where their settings, which hold the time,
-/// lie in a uniform buffer, and keeps all that it has compiled: see [`corpuscle_gpu::Kernel`]. What is the same in all pictures is faster as uniforms.
-fn for_device(gpu: &Gpu, text: String) -> String {
-    match gpu.kind {
-        GpuKind::Software => text.replace("var<uniform> fluid:", "var<storage, read> fluid:"),
-        GpuKind::Hardware => text,
-    }
-}
-
 /// A shader of this crate, joined from its pieces.
 pub(crate) struct Shader<'a> {
     name: &'a str,
@@ -60,14 +51,14 @@ impl<'a> Shader<'a> {
     pub(crate) fn module(&self, gpu: &Gpu) -> wgpu::ShaderModule {
         gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(self.name),
-            source: wgpu::ShaderSource::Wgsl(for_device(gpu, self.text.clone()).into()),
+            source: wgpu::ShaderSource::Wgsl(self.text.as_str().into()),
         })
     }
 }
 
 /// The layout of a group that shaders of this crate share; their names and texts are as for [`Shader::new`].
 pub(crate) fn layout(gpu: &Gpu, label: &'static str, group: u32, shaders: &[(&str, &str)]) -> GroupLayout {
-    let whole = |(name, text): &(&str, &str)| for_device(gpu, joined(name, text).expect("a test joins every shader"));
+    let whole = |(name, text): &(&str, &str)| joined(name, text).expect("a test joins every shader");
     let texts: Vec<String> = shaders.iter().map(whole).collect();
     let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
     GroupLayout::new(&gpu.device, label, group, &texts).expect("the shader is valid, as a test says")
