@@ -1,6 +1,6 @@
 //! What the model shows.
 
-use crate::air::Particle;
+use crate::air::{Particle, order_of};
 use crate::dew::{Dew, State};
 use crate::humid_air::HumidAir;
 use crate::measures::drop_sizes;
@@ -200,9 +200,9 @@ impl Model for Dew {
         let mut state = self.state.clone();
         ([state.water, state.energy], state.fogged) = self.booked();
         state.air = self.processes.gather_list(std::mem::take(&mut state.air));
-        // On a GPU what follows depends on the order of the air.
-        if self.backend() == "cpu" {
-            state.air.sort_unstable_by_key(|particle| particle.id);
+        if self.domain.is_some() {
+            // As it stands in one process.
+            state.air.sort_unstable_by_key(|particle| order_of(particle, &self.room, self.scale.h()));
         }
         postcard::to_stdvec(&(self.shown, &state, self.wetting.as_ref().map(Wetting::state))).unwrap_or_default()
     }

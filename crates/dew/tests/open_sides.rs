@@ -105,19 +105,18 @@ fn wind_may_come_in_aslant() {
     assert!((along / 0.1 - 1.0).abs() < 0.03 && (aside / 0.05 - 1.0).abs() < 0.03, "{along} {aside} m/s");
 }
 
-/// Air that starts too fast makes sound, which leaves by the outlet and does not go to and fro for ever: an outlet at rest would reflect all of it.
+/// Air that starts too fast makes sound, which leaves by the outlet and does not go to and fro for ever: an outlet at rest would reflect all of it. The air starts
+/// at random: a lattice breaks up by rounding, and leaves 2.7 to 3.0 % of the speed.
 #[test]
 fn an_outlet_lets_sound_out() {
     let (speed, sound, length) = (0.1, 1.5, 20.0 * D);
-    for (side, seed) in [(0, None), (1, None), (0, Some(5)), (1, Some(6))] {
+    for (side, seed) in [(0, 5), (1, 6), (0, 7), (1, 8)] {
         let velocity = [[speed, -speed][side], 0.0, 0.0];
         let mut along = [Face::Outlet; 2];
         along[side] = Face::Inlet(Inflow { velocity, temperature: WARM, vapour: 0.0 });
         let faces = [along, [Face::Periodic; 2], [Face::Wall; 2]];
         let mut dew = Dew::new(&setup([length, 6.0 * D, 6.0 * D], faces, sound), |_| [WARM, 0.0]).unwrap();
-        if let Some(seed) = seed {
-            dew.scatter(Scatter { reach: 0.5, sweeps: 15, seed }, |_| [WARM, 0.0]);
-        }
+        dew.scatter(Scatter { reach: 0.5, sweeps: 15, seed }, |_| [WARM, 0.0]);
         dew.stir(|_| velocity.map(|along| 1.3 * along));
         let mut most = 0.0_f64;
         // After four periods of the slowest sound between an inlet and an outlet, over two of them.
@@ -125,7 +124,7 @@ fn an_outlet_lets_sound_out() {
             advance(&mut dew, (16.0 + 0.25 * f64::from(look)) * length / sound);
             most = most.max((mean(&dew, 0) / velocity[0] - 1.0).abs());
         }
-        assert!(most < 0.03, "inlet at side {side}, seed {seed:?}: off by {most} of the speed");
+        assert!(most < 0.025, "inlet at side {side}, seed {seed}: off by {most} of the speed");
     }
 }
 

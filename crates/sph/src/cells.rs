@@ -115,11 +115,6 @@ impl<const D: usize> Cells<D> {
         (((value - self.low[axis]) * self.per_size[axis] - self.first[axis]) as u32 as usize).min(self.count[axis] - 1)
     }
 
-    /// The numbers along the axes of the cell that a particle at a place is sorted into, as counted in the whole.
-    pub fn numbers_at(&self, place: [f64; D]) -> [usize; D] {
-        std::array::from_fn(|axis| self.first[axis] as usize + self.along(axis, place[axis]))
-    }
-
     /// Ranges of the sorted order that cover all particles within `reach` of a place along each axis, one a row of cells.
     #[inline(always)]
     pub fn ranges(&self, place: [f64; D], reach: f64) -> impl Iterator<Item = Range<usize>> + '_ {
@@ -247,7 +242,7 @@ mod tests {
                     let squared = |other: [f64; 3]| (0..3).map(|axis| (other[axis] - place[axis]).powi(2)).sum::<f64>();
                     let within: Vec<u64> =
                         candidates.filter(|(_, other)| squared(*other) < reach * reach).map(|(id, _)| id).collect();
-                    found.insert(*id, (cells.numbers_at(*place), within));
+                    found.insert(*id, within);
                 }
                 found
             };

@@ -78,6 +78,14 @@ fn with_what_is_beyond(room: &Room, reach: f64) -> [[f64; 3]; 2] {
     [end(0, -1.0), end(1, 1.0)]
 }
 
+/// The order of a particle among the air of all processes, once arranged: by its cell, then by its identity.
+pub(crate) fn order_of(particle: &Particle, room: &Room, reach: f64) -> ([u32; 3], u64) {
+    let ([low, _], sizes) = (with_what_is_beyond(room, reach), Cells::<3>::sizes_for(reach));
+    // As the cells number theirs.
+    let along = |axis: usize| ((particle.position[axis] - low[axis]) * (1.0 / sizes[axis])) as u32;
+    ([along(2), along(1), along(0)], particle.id)
+}
+
 impl Arrangement {
     /// Sorts the particles and those of the halo, and makes images of those within `reach` of a face. The particles are in a `part` of the room.
     pub fn arrange(
@@ -148,12 +156,6 @@ impl Arrangement {
     /// Whether air in the part that was arranged can be within the reach of a place.
     pub fn may_be_near(&self, place: [f64; 3]) -> bool {
         self.part.contains(place)
-    }
-
-    /// The order of a particle of the part that was arranged among all: by its cell, then by its identity.
-    pub fn order_of(&self, particle: &Particle) -> ([usize; 3], u64) {
-        let [x, y, z] = self.cells.numbers_at(particle.position);
-        ([z, y, x], particle.id)
     }
 
     /// The places' coordinates.

@@ -8,6 +8,7 @@ mod properties;
 mod scale;
 pub mod transport;
 
+pub(crate) use arrangement::order_of;
 pub use arrangement::{Arrangement, Entry, Part};
 pub use density::Sums;
 #[cfg(feature = "gpu")]

@@ -2,7 +2,7 @@
 
 use super::accelerated::Taken;
 use super::{Dew, State};
-use crate::air::{Particle, Rates, Role};
+use crate::air::{Particle, Rates, Role, order_of};
 use crate::exchange::{Exchange, ToAir, Work, excess};
 use crate::room::Face;
 use crate::settings::Condensation;
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 const SUMMED_TOGETHER: usize = 4096;
 
 /// Water that a particle of air deposits: its order among the air of all processes, the water, kg, and the shares of boundary particles.
-type Deposit = (([usize; 3], u64), f64, Vec<(u32, f64)>);
+type Deposit = (([u32; 3], u64), f64, Vec<(u32, f64)>);
 
 impl Dew {
     /// What air and solids exchange as they stand.
@@ -199,7 +199,7 @@ impl Dew {
                     let water = mass * std::mem::replace(&mut excesses[particle], 0.0);
                     self.take_from_air(particle, water, &shares);
                     if self.domain.is_some() {
-                        let order = self.arrangement.order_of(&self.state.air[particle]);
+                        let order = order_of(&self.state.air[particle], &self.room, self.scale.h());
                         told.push((order, water, shares.clone()));
                     } else {
                         self.deposit_of(water, &shares, step);
