@@ -49,7 +49,7 @@ impl VoronoiFlood {
     }
 
     /// As [`VoronoiFlood::new`], with the cells distributed over processes: all of them call it. The first then has the flood; the others
-    /// [follow](VoronoiFlood::follow) it.
+    /// [follow](Processes::follow) it.
     ///
     /// # Errors
     /// As [`VoronoiFlood::new`], of any process.
