@@ -86,8 +86,7 @@ impl Simulation {
         scene.resolve_defaults();
         let opening = Opening { scene: &mut scene, folder, processes, is_restored };
         let kind = models::of(opening.scene)?;
-        let is_shared = opening.scene.flood().is_some() || opening.scene.dew().is_some();
-        if processes.link().is_some() && !is_shared {
+        if processes.link().is_some() && !kind.is_shared() {
             let what =
                 "several processes compute dew, and floods by scheme voronoi, only: start the run without `mpirun`";
             return Err(ModelError::Setup(what.into()).into());

@@ -6,9 +6,11 @@
 #![warn(missing_docs)]
 
 mod commands;
+mod load;
 mod threads;
 
 pub use commands::{Command, Lead};
+pub use load::{MAX_IMBALANCE, STEPS_BETWEEN_BALANCING, imbalance};
 pub use threads::{on_threads, threads};
 
 use corpuscle_model::ExactSum;

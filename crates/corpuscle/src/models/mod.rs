@@ -78,6 +78,11 @@ pub trait ModelKind: Send + Sync {
     /// Where the scene, or a file that it names, cannot be used.
     fn open(&self, opening: Opening<'_>) -> Result<Opened, Error>;
 
+    /// Whether several processes can share a run of it.
+    fn is_shared(&self) -> bool {
+        false
+    }
+
     /// Name of its particles, in the plural.
     fn particles(&self) -> &'static str {
         "particles"

@@ -6,7 +6,6 @@ use crate::air::{Particle, Rates, Role, order_of};
 use crate::exchange::{Exchange, ToAir, Work, excess};
 use crate::room::Face;
 use crate::settings::Condensation;
-use crate::solids::Site;
 use corpuscle_model::ExactSum;
 use rayon::prelude::*;
 
@@ -41,8 +40,7 @@ impl Dew {
         supplied.resize(self.state.supplied.len(), [0.0; 3]);
         let exchange = self.at_surfaces();
         let factor = self.settings.time_factor;
-        let owns = |site: &Site| self.domain.as_ref().is_none_or(|domain| domain.owns_site(site));
-        exchange.to_solids(factor * step, owns, to_solids);
+        exchange.to_solids(factor * step, |site| self.owns(site.position), to_solids);
         let particles = self.solids.particles.len();
         share_of.clear();
         share_of.resize(particles, 1.0);

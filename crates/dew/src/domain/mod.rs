@@ -16,19 +16,12 @@ use crate::air::{Part, Particle, Role};
 use crate::dew::Dew;
 use crate::normalisation::Tensor;
 use crate::room::Room;
-use crate::solids::Site;
 use bytemuck::Pod;
 use corpuscle_model::{Account, ExactSum};
-use corpuscle_processes::{Lead, Link, Processes};
+use corpuscle_processes::{Lead, Link, MAX_IMBALANCE, Processes, STEPS_BETWEEN_BALANCING, imbalance};
 use halo::Distribution;
 use std::sync::Arc;
 use tiles::Tiles;
-
-/// Largest load of a process over the mean; above it tiles move.
-const MAX_IMBALANCE: f64 = 1.1;
-
-/// Steps between two checks of the load.
-const STEPS_BETWEEN_BALANCING: u64 = 64;
 
 /// Room for rounding where a part ends, over the reach.
 const MARGIN: f64 = 1e-6;
@@ -68,13 +61,18 @@ impl Domain {
             lead: None,
             tiles,
         };
-        domain.distribute(&vec![1.0; domain.tiles.len()], room, reach);
+        domain.assign(domain.owners_for(&vec![1.0; domain.tiles.len()]), room, reach);
         Some(domain)
     }
 
-    /// Distributes the tiles anew, by the work in each. The air moves when it is shared next.
-    fn distribute(&mut self, work: &[f64], room: &Room, reach: f64) {
-        self.owners = tiles::owners(self.tiles.counts, work, self.link.count());
+    /// The process of each tile, by the work in each.
+    fn owners_for(&self, work: &[f64]) -> Vec<u16> {
+        tiles::owners(self.tiles.counts, work, self.link.count())
+    }
+
+    /// Gives tiles to processes. The air moves when it is shared next.
+    fn assign(&mut self, owners: Vec<u16>, room: &Room, reach: f64) {
+        self.owners = owners;
         let own = self.link.rank();
         let is_own = |tile: usize| usize::from(self.owners[tile]) == own;
         self.is_inner = vec![false; self.tiles.len()];
@@ -100,11 +98,6 @@ impl Domain {
     /// Whether this process computes what is at a position.
     pub fn owns(&self, position: [f64; 3]) -> bool {
         self.owner(position) == self.link.rank()
-    }
-
-    /// Whether this process finds what a site of a solid gets.
-    pub fn owns_site(&self, site: &Site) -> bool {
-        self.owns(site.position)
     }
 
     /// Sends the air that has left this part to its processes, takes what has come, and fills the halo, whose velocities are taken `ahead` s on.
@@ -143,14 +136,6 @@ impl Domain {
         let mut work = vec![0; self.tiles.len()];
         air.iter().for_each(|particle| work[self.tiles.of(particle.position)] += 1);
         work
-    }
-
-    /// Load of the busiest process over the mean; 1 where there is none.
-    fn imbalance(&self, work: &[f64]) -> f64 {
-        let mut sums = vec![0.0; self.link.count()];
-        self.owners.iter().zip(work).for_each(|(owner, work)| sums[usize::from(*owner)] += work);
-        let total: f64 = sums.iter().sum();
-        if total > 0.0 { sums.iter().copied().fold(0.0, f64::max) * sums.len() as f64 / total } else { 1.0 }
     }
 }
 
@@ -210,8 +195,13 @@ impl Dew {
         let mut work = domain.work(&self.state.air);
         self.processes.total(&mut work, &mut []);
         let work: Vec<f64> = work.into_iter().map(|count| count as f64).collect();
-        if domain.imbalance(&work) > MAX_IMBALANCE {
-            domain.distribute(&work, &self.room, self.scale.h());
+        let imbalance = |owners: &[u16]| imbalance(owners, &work, self.processes.count());
+        let present = imbalance(&domain.owners);
+        if present > MAX_IMBALANCE {
+            let owners = domain.owners_for(&work);
+            if imbalance(&owners) < present {
+                domain.assign(owners, &self.room, self.scale.h());
+            }
         }
     }
 
@@ -222,7 +212,7 @@ impl Dew {
         let inside = air.iter().filter(|particle| particle.role == Role::Inside).count();
         domain.air = [air.len(), inside];
         let work: Vec<f64> = domain.work(air).into_iter().map(|count| count as f64).collect();
-        domain.distribute(&work, &self.room, self.scale.h());
+        domain.assign(domain.owners_for(&work), &self.room, self.scale.h());
         air.retain(|particle| domain.owns(particle.position));
         // What was booked stands at the first process.
         if !self.processes.is_first() {

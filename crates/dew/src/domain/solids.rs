@@ -23,7 +23,7 @@ impl Domain {
     /// Completes what sites get from the air, and the heat that is conducted to the particles of solids, W, by what other processes have found.
     pub fn complete(&self, sites: &[Site], given: &mut [ToSolid], heat: &mut [f64]) {
         let mut own = heat[self.own_nodes(heat.len())].to_vec();
-        let of_own = given.iter().zip(sites).filter(|(_, site)| !site.image && self.owns_site(site));
+        let of_own = given.iter().zip(sites).filter(|(_, site)| !site.image && self.owns(site.position));
         own.extend(of_own.flat_map(|(given, _)| [given.heat, given.water, given.share, given.conductance]));
         let all = self.link.all_gather(bytemuck::cast_slice(&own));
         let all: Vec<Vec<f64>> = all.iter().map(|bytes| from_bytes(bytes)).collect();

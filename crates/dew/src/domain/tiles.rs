@@ -151,13 +151,11 @@ mod tests {
         assert!(tiles.sides.iter().all(|side| *side >= 0.1 * (1.0 - 1e-12)));
         // What lies beyond the room belongs to the outermost.
         assert_eq!(tiles.of([-5.0, 0.01, 9.0]), tiles.of([0.01, 0.01, 0.24]));
-        let round: Vec<usize> = tiles.round(tiles.of([0.5, 0.3, 0.1])).collect();
-        for place in [[0.41, 0.3, 0.1], [0.59, 0.39, 0.2]] {
-            assert!(
-                tiles
-                    .near(place, 0.1)
-                    .all(|tile| round.contains(&tile) || tiles.near([0.5, 0.3, 0.1], 0.2).any(|near| near == tile))
-            );
+        // What is within reach of a position lies in its tile and those round it.
+        for number in 0..1000 {
+            let place = [1.0, 0.7, 0.25].map(|side| side * f64::from(number) * 0.618).map(f64::fract);
+            let round: Vec<usize> = tiles.round(tiles.of(place)).collect();
+            assert!(tiles.near(place, 0.1).all(|tile| round.contains(&tile)), "{place:?}");
         }
     }
 

@@ -48,6 +48,10 @@ impl ModelKind for Kind {
         Ok(Opened::plain(Box::new(corpuscle_dew::open_on(processes, dew(scene)?, scene.seed, folder)?)))
     }
 
+    fn is_shared(&self) -> bool {
+        true
+    }
+
     fn bytes_per_particle(&self, _scene: &Scene) -> f64 {
         BYTES_PER_AIR_PARTICLE
     }

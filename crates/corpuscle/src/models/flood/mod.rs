@@ -53,6 +53,10 @@ impl ModelKind for Kind {
         Ok(Opened { model, terrain: Some(terrain), notes })
     }
 
+    fn is_shared(&self) -> bool {
+        true
+    }
+
     fn bytes_per_particle(&self, scene: &Scene) -> f64 {
         let is_voronoi = scene.flood().is_some_and(|scene| scene.flood.scheme == Scheme::Voronoi);
         if is_voronoi { BYTES_PER_CELL_OF_WATER } else { BYTES_PER_PARTICLE }

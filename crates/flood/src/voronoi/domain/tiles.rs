@@ -8,15 +8,10 @@ use super::super::water::Column;
 use super::super::{State, VoronoiFlood};
 use super::{Domain, agreed, curve, kept_by};
 use corpuscle_model::{Account, ModelError};
+use corpuscle_processes::{MAX_IMBALANCE, STEPS_BETWEEN_BALANCING, imbalance};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::ops::Range;
-
-/// Largest load of a process over the mean; above it tiles move.
-const MAX_IMBALANCE: f64 = 1.1;
-
-/// Steps between two checks of the load.
-const STEPS_BETWEEN_BALANCING: u64 = 64;
 
 /// Number of cells and of border faces of a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -346,12 +341,4 @@ impl VoronoiFlood {
         self.state = state;
         self.remake_part(owners, blocks, &tiles, &states)
     }
-}
-
-/// Load of the busiest process over the mean; 1 where there is none.
-fn imbalance(owners: &[u16], work: &[f64], count: usize) -> f64 {
-    let mut sums = vec![0.0; count];
-    owners.iter().zip(work).for_each(|(owner, work)| sums[usize::from(*owner)] += work);
-    let total: f64 = sums.iter().sum();
-    if total > 0.0 { sums.iter().copied().fold(0.0, f64::max) * count as f64 / total } else { 1.0 }
 }
