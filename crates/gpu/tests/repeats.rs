@@ -111,16 +111,30 @@ fn no_structure_stands_twice() {
     assert!(repeated.is_empty(), "declare these once (`declare!`), or in a piece:\n{}", repeated.join("\n"));
 }
 
+/// Whether a Rust text lays out a structure, to be copied as bytes, that a shader could have too: WGSL has no numbers of 64 bits.
+fn lays_out_for_shaders(text: &str) -> bool {
+    let members =
+        |part: &str| part.split_once('{').and_then(|(_, rest)| rest.split_once('}')).map(|found| found.0.to_owned());
+    let is_of_shaders = |members: String| !["f64", "u64", "i64"].iter().any(|wide| members.contains(wide));
+    text.contains("Pod") && text.split("repr(C").skip(1).filter_map(members).any(is_of_shaders)
+}
+
 /// Structures that the device sees come from declarations, which give the WGSL too.
 #[test]
 fn no_structure_is_laid_out_by_hand() {
     let shaders = sources("wgsl");
     let has_shaders = |source: &Source| shaders.iter().any(|shader| shader.of == source.of);
-    let is_handwritten = |source: &&Source| source.text.contains("repr(C)") && source.text.contains("Pod");
     let code = sources("rs");
-    let handwritten = code.iter().filter(is_handwritten).filter(|source| has_shaders(source));
+    let handwritten = code.iter().filter(|source| lays_out_for_shaders(&source.text) && has_shaders(source));
     let handwritten: Vec<_> = handwritten.map(|source| &source.file).collect();
     assert!(handwritten.len() == 1 && handwritten[0].ends_with("gpu/src/declare.rs"), "{handwritten:#?}");
+}
+
+#[test]
+fn structures_of_messages_are_none_of_shaders() {
+    let structure = |members: &str| format!("#[derive(Pod)]\n#[repr(C)]\nstruct Of {{ {members} }}");
+    assert!(lays_out_for_shaders(&structure("position: [f32; 3], id: u32")));
+    assert!(!lays_out_for_shaders(&structure("position: [f64; 3], id: u32")));
 }
 
 /// Kernels of models, and of crates that only compute, get their bindings from declarations.
