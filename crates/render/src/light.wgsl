@@ -50,12 +50,9 @@ const CLEAR_AIR: f32 = 12800.0;
 
 // Light from a place as it comes through the air, which adds light of its own.
 fn hazed(light: vec3f, place: vec3f) -> vec3f {
-    // Indoors there is none, and a map is seen from straight above.
-    if view.frame.w > 0.5 || view.eye.w < 0.5 {
-        return light;
-    }
     let left = exp(-length(place - view.eye.xyz) * view.frame.z / CLEAR_AIR);
-    return mix(view.horizon.rgb, light, left);
+    // Indoors there is none, and a map is seen from straight above.
+    return select(mix(view.horizon.rgb, light, left), light, (view.frame.w > 0.5) | (view.eye.w < 0.5));
 }
 
 // Light that a matt surface of a colour gives back.

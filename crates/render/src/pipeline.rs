@@ -71,7 +71,7 @@ impl PipelineDescriptor<'_> {
         let Self { label, topology, buffers, .. } = self;
         let groups = self.groups.len();
         let rest = format!("{label} {groups} {fragment} {colours:?} {depth:?} {topology:?} {buffers:?}");
-        gpu.drawing(format!("{rest} {}", self.shader.text), |_| {
+        gpu.drawing(format!("{rest} {}", self.shader.key()), |_| {
             let module = self.shader.module(gpu);
             let groups: Vec<_> = self.groups.iter().map(|group| Some(group.layout())).collect();
             let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -87,7 +87,7 @@ impl PipelineDescriptor<'_> {
                 vertex: wgpu::VertexState {
                     module: &module,
                     entry_point: Some("vertex"),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    compilation_options: self.shader.options(),
                     buffers: &buffers,
                 },
                 primitive: wgpu::PrimitiveState { topology: self.topology, ..wgpu::PrimitiveState::default() },
@@ -102,7 +102,7 @@ impl PipelineDescriptor<'_> {
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
                     entry_point: Some(fragment),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    compilation_options: self.shader.options(),
                     targets: &targets,
                 }),
                 multiview_mask: None,

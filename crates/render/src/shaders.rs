@@ -27,6 +27,9 @@ const LIBRARY: [(&str, &str); 20] = [
     ("splat_sums", include_str!("fluid/splat_sums.wgsl")),
 ];
 
+/// Constants of shaders of what is never in a room: without the street before its windows they are half as long.
+const OUTDOORS: &[(&str, f64)] = &[("may_be_in_room", 0.0)];
+
 /// The text of a shader of this crate, joined from its pieces. `text` is the file of the same name.
 fn joined(name: &str, text: &str) -> Result<String, ImportError> {
     let declared = declared();
@@ -36,15 +39,33 @@ fn joined(name: &str, text: &str) -> Result<String, ImportError> {
 
 /// A shader of this crate, joined from its pieces.
 pub(crate) struct Shader<'a> {
-    name: &'a str,
+    /// Its name.
+    pub name: &'a str,
     /// The whole of it.
     pub text: String,
+    /// Constants that are not as the text says.
+    constants: &'static [(&'static str, f64)],
 }
 
 impl<'a> Shader<'a> {
     /// The shader of a name; `text` is the file of the same name.
     pub(crate) fn new(name: &'a str, text: &str) -> Self {
-        Self { name, text: joined(name, text).expect("a test joins every shader") }
+        Self { name, text: joined(name, text).expect("a test joins every shader"), constants: &[] }
+    }
+
+    /// The same of what is never in a room.
+    pub(crate) fn outdoors(self) -> Self {
+        Self { constants: OUTDOORS, ..self }
+    }
+
+    /// What tells it from other shaders.
+    pub(crate) fn key(&self) -> String {
+        format!("{:?} {}", self.constants, self.text)
+    }
+
+    /// Options of a pipeline that it is in.
+    pub(crate) fn options(&self) -> wgpu::PipelineCompilationOptions<'_> {
+        wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() }
     }
 
     /// Its module on a device.
@@ -53,6 +74,13 @@ impl<'a> Shader<'a> {
             label: Some(self.name),
             source: wgpu::ShaderSource::Wgsl(self.text.as_str().into()),
         })
+    }
+}
+
+impl Shader<'static> {
+    /// The layout of one of its groups.
+    pub(crate) fn group(&self, gpu: &Gpu, group: u32) -> GroupLayout {
+        GroupLayout::new(&gpu.device, self.name, group, &[&self.text]).expect("the shader is valid, as a test says")
     }
 }
 
@@ -92,6 +120,25 @@ mod tests {
             check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
         }
         assert!(all.len() > 30, "{} shaders", all.len());
+    }
+
+    /// Mesa's software Vulkan compiles a shader anew for each picture, and keeps it, where a branch depends on parameters alone and the shader is much shorter
+    /// without it: `select` takes its place.
+    #[test]
+    fn no_branch_depends_on_parameters_alone() {
+        let all = shaders_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+        let parameters = ["view.", "fluid.", "ground.", "is_paper()", "!is_paper()"];
+        let begins = |line: &str| {
+            let condition = line.trim_start().strip_prefix("if ").or(line.trim_start().strip_prefix("} else if "));
+            condition.is_some_and(|condition| parameters.iter().any(|parameter| condition.starts_with(parameter)))
+        };
+        let is_branch = |line: &&str| begins(line) && !line.contains(" | ") && !line.contains(" & ");
+        let lines = |(name, text): &(String, String)| -> Vec<String> {
+            text.lines().filter(is_branch).map(|line| format!("{name}: {}", line.trim())).collect()
+        };
+        let found: Vec<String> = all.iter().flat_map(lines).collect();
+        // Short with either branch.
+        assert_eq!(found, ["terrain: if ground.cell.w == 0.0 {"]);
     }
 
     #[test]

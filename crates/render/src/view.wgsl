@@ -45,12 +45,12 @@ fn ray_through(place: vec3f) -> Ray {
 
 // The line of sight through a pixel.
 fn ray_at_pixel(pixel: vec2f) -> Ray {
-    if view.eye.w > 0.5 {
-        // Not by a place near the eye: its digits would be those of the eye.
-        let slope = clip_at_pixel(pixel) / vec2f(view.clip_from_view[0][0], view.clip_from_view[1][1]);
-        return Ray(view.eye.xyz, normalize((view.world_from_view * vec4f(slope, -1.0, 0.0)).xyz));
-    }
-    return ray_through(world_at_pixel(pixel, 0.5));
+    // With perspective not by a place near the eye: its digits would be those of the eye.
+    let slope = clip_at_pixel(pixel) / vec2f(view.clip_from_view[0][0], view.clip_from_view[1][1]);
+    let from_eye = normalize((view.world_from_view * vec4f(slope, -1.0, 0.0)).xyz);
+    let level = ray_through(world_at_pixel(pixel, 0.5));
+    let perspective = view.eye.w > 0.5;
+    return Ray(select(level.origin, view.eye.xyz, perspective), select(level.direction, from_eye, perspective));
 }
 
 // The direction from a place to the eye.

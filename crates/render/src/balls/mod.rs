@@ -93,7 +93,7 @@ impl BallPainter {
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
         let layout = shaders::layout(gpu, "balls", 1, &SHADERS);
-        let shader = |(name, text): (&'static str, &str)| Shader::new(name, text);
+        let shader = |(name, text): (&'static str, &str)| Shader::new(name, text).outdoors();
         let [balls, matt, discs, ..] = SHADERS;
         let descriptor = PipelineDescriptor {
             label: "balls",

@@ -84,7 +84,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let smooth_normal = unfold(textureLoad(normals, pixel, 0).r);
     let to_eye = towards_eye(place);
     var normal = smooth_normal;
-    if moving > 0.0 && fluid.ripples.y > 0.0 {
+    if moving * fluid.ripples.y > 0.0 {
         // Seen at a grazing angle the sides of ripples that face away are hidden.
         let facing = clamp(2.5 * dot(smooth_normal, to_eye), 0.0, 1.0);
         let slope = fluid.ripples.y * moving * facing * ripples(patterns, pixel_here);
@@ -102,7 +102,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var ground = seen_through(pixel, place, refracted * path / view.frame.z);
     // Waves gather light on the bed where the water is neither a film nor deep.
     let gathered = shine * sqrt(moving) * (1.0 - exp(-8.0 * path)) * exp(-1.2 * path);
-    if gathered > 0.01 && fluid.ripples.y > 0.0 {
+    if select(0.0, gathered, fluid.ripples.y > 0.0) > 0.01 {
         let bed = carried(place.xy + refracted.xy * path / view.frame.z, velocity / view.frame.z);
         ground *= 1.0 + 0.6 * gathered * caustics(bed, pixel_here);
     }

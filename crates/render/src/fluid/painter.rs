@@ -43,7 +43,8 @@ impl FluidPainter {
         let settings = shaders::layout(gpu, "fluid", 1, &SPRITES);
         let [depth, thickness] = sprites(gpu, view, &settings);
         let narrow = ("narrow_range", include_str!("narrow_range.wgsl"));
-        let filter = |shader, entry| Filter::new(gpu, view, shader, entry);
+        let filter = |(name, text), entry| Filter::new(gpu, view, &Shader::new(name, text), entry);
+        let shading = Shader::new("fluid_shade", include_str!("fluid_shade.wgsl")).outdoors();
         let composing = ("fluid_compose", include_str!("fluid_compose.wgsl"));
         let composed = shaders::layout(gpu, "composing", 1, &[composing]);
         Self {
@@ -57,7 +58,7 @@ impl FluidPainter {
             narrow_range: filter(narrow, "along"),
             square: filter(narrow, "square"),
             normals: filter(("fluid_normals", include_str!("fluid_normals.wgsl")), "main"),
-            shading: filter(("fluid_shade", include_str!("fluid_shade.wgsl")), "main"),
+            shading: Filter::new(gpu, view, &shading, "main"),
             composing: PipelineDescriptor {
                 label: "composing",
                 shader: &Shader::new(composing.0, composing.1),
@@ -84,21 +85,20 @@ impl FluidPainter {
 }
 
 impl Filter {
-    fn new(gpu: &Gpu, view: &GroupLayout, shader: (&'static str, &str), entry: &str) -> Self {
-        let layout = shaders::layout(gpu, shader.0, 1, &[shader]);
-        let whole = Shader::new(shader.0, shader.1);
-        let pipeline = gpu.computing(format!("{entry} of {}", whole.text), |_| {
+    fn new(gpu: &Gpu, view: &GroupLayout, shader: &Shader<'static>, entry: &str) -> Self {
+        let layout = shader.group(gpu, 1);
+        let pipeline = gpu.computing(format!("{entry} of {}", shader.key()), |_| {
             let both = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(shader.0),
+                label: Some(shader.name),
                 bind_group_layouts: &[Some(view.layout()), Some(layout.layout())],
                 immediate_size: 0,
             });
             gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(shader.0),
+                label: Some(shader.name),
                 layout: Some(&both),
-                module: &whole.module(gpu),
+                module: &shader.module(gpu),
                 entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                compilation_options: shader.options(),
                 cache: None,
             })
         });

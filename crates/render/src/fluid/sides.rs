@@ -38,7 +38,7 @@ impl WaterSides {
         let attributes = layout.vertex_attributes();
         let descriptor = PipelineDescriptor {
             label: "sides of water",
-            shader: &Shader::new("sides", include_str!("sides.wgsl")),
+            shader: &Shader::new("sides", include_str!("sides.wgsl")).outdoors(),
             groups: &[renderer.view_layout()],
             buffers: &[buffer_layout(&layout, wgpu::VertexStepMode::Vertex, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleList,

@@ -2,6 +2,9 @@
 #import view
 #import noise
 
+// Whether the picture may be in a room, before whose glass walls is a street.
+override may_be_in_room: bool = true;
+
 // A window of four panes in a wall towards the sun.
 fn window(direction: vec3f) -> vec3f {
     let towards = normalize(vec3f(view.sun.xy, 1e-4));
@@ -75,33 +78,28 @@ fn street(direction: vec3f) -> vec3f {
     return seen + lights(turn, height);
 }
 
-// What is seen in a direction, without the sun's disc.
+// What is seen in a direction, without the sun's disc. All is computed and one selected: see the test `no_branch_depends_on_parameters_alone`.
 fn surroundings(direction: vec3f) -> vec3f {
-    if view.frame.w > 1.1 && !is_paper() {
-        return street(direction) + window(direction);
-    }
-    if view.frame.w > 0.5 {
-        let up = smoothstep(0.0, 0.9, direction.z);
-        let down = smoothstep(0.0, 0.7, -direction.z);
-        return mix(mix(view.horizon.rgb, view.above.rgb, up), view.below.rgb, down);
-    }
+    let up = smoothstep(0.0, 0.9, direction.z);
+    let down = smoothstep(0.0, 0.7, -direction.z);
+    let indoors = mix(mix(view.horizon.rgb, view.above.rgb, up), view.below.rgb, down);
     let height = max(direction.z, 0.0);
     // Air gets thicker towards the horizon; light scattered forward makes a glow round the sun.
     let clear = mix(view.horizon.rgb, view.above.rgb, 1.0 - exp(-3.2 * height));
     let near_sun = max(dot(direction, view.sun.xyz), 0.0);
     let glow = 0.25 * pow(near_sun, 12.0) + 0.35 * pow(near_sun, 160.0);
     let sky = clear + glow * vec3f(1.0, 0.88, 0.7);
-    return mix(sky, view.below.rgb, smoothstep(0.0, 0.6, -direction.z));
+    let seen = select(mix(sky, view.below.rgb, smoothstep(0.0, 0.6, -direction.z)), indoors, view.frame.w > 0.5);
+    if may_be_in_room {
+        return select(seen, street(direction) + window(direction), (view.frame.w > 1.1) & !is_paper());
+    }
+    return seen;
 }
 
 // What is seen in a direction, the sun's disc with it.
 fn sky(direction: vec3f) -> vec3f {
-    let seen = surroundings(direction);
-    if view.frame.w > 0.5 {
-        return seen;
-    }
-    let disc = smoothstep(0.99985, 0.99993, dot(direction, view.sun.xyz));
-    return seen + disc * 20.0 * view.sunlight.rgb;
+    let disc = select(smoothstep(0.99985, 0.99993, dot(direction, view.sun.xyz)), 0.0, view.frame.w > 0.5);
+    return surroundings(direction) + disc * 20.0 * view.sunlight.rgb;
 }
 
 // Light that comes from all round on a surface, by the cosine of its normal upwards.

@@ -78,7 +78,7 @@ fn hit(corner: Corner) -> vec3f {
 @fragment
 fn fragment(corner: Corner) -> Drawn {
     let place = hit(corner);
-    if is_paper() || corner.to_end.w < 0.5 {
+    if is_paper() | (corner.to_end.w < 0.5) {
         return Drawn(vec4f(corner.colour, 1.0), depth_at(place));
     }
     let way = corner.to_end.xyz - corner.from_end.xyz;
