@@ -96,14 +96,30 @@ fn encode(
     Ok(bytes)
 }
 
+/// The most bytes that Deflate packs into one: what a file says to hold beyond that it cannot.
+const MOST_PACKED: usize = 1032;
+
 /// A PNG file of any kind as width, height, and red, green, blue and opacity of each pixel, row by row.
 ///
 /// # Errors
-/// What cannot be read.
+/// What cannot be read; a file that is too short for the pixels that it names.
 pub fn decode_rgba(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
     let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
     let mut reader = decoder.read_info().map_err(|error| error.to_string())?;
+    let header = reader.info();
+    let packed = header.raw_row_length().saturating_mul(header.height as usize);
+    if packed / MOST_PACKED > bytes.len() {
+        return Err(format!("{} x {} pixels cannot be in {} bytes", header.width, header.height, bytes.len()));
+    }
+    let colours = header.palette.as_ref().map_or(0, |palette| palette.len());
+    let opacities = header.trns.as_ref().map_or(0, |opacities| opacities.len());
+    // The library takes for granted that they fit, and panics.
+    if header.color_type == png::ColorType::Indexed
+        && !(colours.is_multiple_of(3) && colours <= 3 * 256 && opacities <= colours / 3)
+    {
+        return Err(format!("a palette of {colours} bytes with {opacities} opacities is broken"));
+    }
     let mut pixels = vec![0; reader.output_buffer_size().ok_or("the picture is too large")?];
     let info = reader.next_frame(&mut pixels).map_err(|error| error.to_string())?;
     pixels.truncate(info.buffer_size());
@@ -143,6 +159,29 @@ mod tests {
         encoder.write_header().unwrap().write_image_data(&[77]).unwrap();
         assert_eq!(decode_rgba(&grey), Ok((1, 1, vec![77, 77, 77, 255])));
         assert!(decode_rgba(&rgb[..20]).is_err() && decode_rgba(b"no picture").is_err());
+    }
+
+    #[test]
+    fn a_broken_palette_is_refused() {
+        let indexed = |palette: &[u8], opacities: &[u8]| {
+            let mut file = Vec::new();
+            let mut encoder = png::Encoder::new(&mut file, 1, 1);
+            encoder.set_color(png::ColorType::Indexed);
+            encoder.set_palette(palette.to_vec());
+            encoder.set_trns(opacities.to_vec());
+            encoder.write_header().unwrap().write_image_data(&[0]).unwrap();
+            decode_rgba(&file)
+        };
+        assert_eq!(indexed(&[1, 2, 3], &[4]), Ok((1, 1, vec![1, 2, 3, 4])));
+        assert!(indexed(&[1, 2, 3, 4, 5], &[6]).is_err() && indexed(&[1, 2, 3], &[4, 5]).is_err());
+    }
+
+    #[test]
+    fn a_file_too_short_for_its_pixels_is_refused_before_they_take_memory() {
+        let mut long = Vec::new();
+        let encoder = png::Encoder::new(&mut long, 100_000, 100_000);
+        encoder.write_header().unwrap().write_chunk(png::chunk::IDAT, &[0x78, 0x01]).unwrap();
+        assert!(decode_rgba(&long).unwrap_err().starts_with("100000 x 100000 pixels cannot be in"));
     }
 
     #[test]

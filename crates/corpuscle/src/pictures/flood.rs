@@ -1,8 +1,8 @@
 //! Pictures of a flood: water on a block of terrain.
 
+use super::ground_picture;
 use super::ground_style::DepthClasses;
 use super::lines::plates;
-use super::photo;
 use super::times::Times;
 use super::{DrawContext, GroundStyle, Moment, OwnView, PictureSettings, Quality, Shown, Subject, WaterColour};
 use crate::Error;
@@ -166,7 +166,7 @@ impl FloodPicture {
         }
         let mut mesh = Terrain::new(&context.renderer, &stage, field.clone(), &colours, base)?;
         if let GroundStyle::Picture(path) = ground_style {
-            mesh.drape(context.renderer.gpu(), &photo::photo(path, ground, &colours)?)?;
+            mesh.drape(context.renderer.gpu(), &ground_picture(path, ground, &colours)?)?;
         }
         let depth = usual_depth(settings, ground, Path::new(""))?;
         Ok(Self {

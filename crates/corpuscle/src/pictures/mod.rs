@@ -37,6 +37,7 @@ use corpuscle_terrain::Terrain;
 use flood::FloodPicture;
 pub use ground_style::GroundStyle;
 pub use particles::Particles;
+pub use photo::ground_picture;
 pub use scenery::Scenery;
 pub use sheet::Sheet;
 pub use show::{Quality, Shown};

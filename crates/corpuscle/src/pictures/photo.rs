@@ -18,12 +18,13 @@ const GEOTIFF: [&str; 2] = ["tif", "tiff"];
 /// Cells each way of the grid between whose nodes positions are interpolated: over a terrain projections bend by far less than a pixel within one.
 const GRID_CELLS: usize = 32;
 
-/// The picture of a file, PNG or GeoTIFF, as it lies on a terrain, from corner to corner, where `natural` shows beside it.
+/// The picture of a file, PNG or GeoTIFF, as it lies on a terrain, from corner to corner. Beside it are the pixels of `natural`, which covers the
+/// terrain.
 ///
 /// # Errors
 /// [`Error::GroundPicture`] where it or its world file cannot be read, or it lies nowhere on the terrain; [`Error::Terrain`] for a GeoTIFF
 /// that cannot be read.
-pub(super) fn photo(path: &Path, terrain: &Terrain, natural: &Image) -> Result<Image, Error> {
+pub fn ground_picture(path: &Path, terrain: &Terrain, natural: &Image) -> Result<Image, Error> {
     let wrong = |what: String| Error::GroundPicture { path: path.into(), what };
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase()).unwrap_or_default();
     if GEOTIFF.iter().any(|geotiff| ending == *geotiff) {

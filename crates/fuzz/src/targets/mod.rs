@@ -44,9 +44,12 @@ fn path_of(name: &str) -> PathBuf {
     FOLDER.with(|folder| folder.get_or_init(|| scratch().expect("a folder for temporary files")).path().join(name))
 }
 
-/// Has a file with these bytes read.
+/// Has a file with these bytes read. Its name may have a folder.
 fn on_file<T>(name: &str, bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
     let path = path_of(name);
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).expect("a temporary folder can be made");
+    }
     std::fs::write(&path, bytes).expect("a temporary file can be written");
     read(&path)
 }
