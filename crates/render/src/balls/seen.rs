@@ -29,7 +29,7 @@ impl SeenPainter {
         let layout = shaders::layout(gpu, "balls seen", 2, &[seen]);
         let find = PipelineDescriptor {
             label: "balls numbered",
-            shader: &Shader::new(numbered.0, numbered.1),
+            shader: &Shader::new(numbered.0, numbered.1).outdoors(),
             groups: &[renderer.view_layout(), balls],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -37,7 +37,7 @@ impl SeenPainter {
         .nearest(gpu, NUMBERS);
         let shade = PipelineDescriptor {
             label: "balls seen",
-            shader: &Shader::new(seen.0, seen.1),
+            shader: &Shader::new(seen.0, seen.1).outdoors(),
             groups: &[renderer.view_layout(), balls, &layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,

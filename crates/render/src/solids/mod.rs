@@ -106,9 +106,13 @@ impl Solid {
         let buffers = [buffer_layout(&of_vertices, wgpu::VertexStepMode::Vertex, &attributes)];
         let behind = Behind::new(gpu, glass);
         let groups = [renderer.view_layout(), &layout, &behind.layout];
+        let mut whole = Shader::new(shader.0, shader.1);
+        if matches!(style, SolidStyle::Building(..)) {
+            whole = whole.outdoors();
+        }
         let descriptor = PipelineDescriptor {
             label: shader.0,
-            shader: &Shader::new(shader.0, shader.1),
+            shader: &whole,
             groups: if is_glass { &groups } else { &groups[..2] },
             buffers: &buffers,
             topology: wgpu::PrimitiveTopology::TriangleList,
