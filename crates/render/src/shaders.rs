@@ -122,23 +122,73 @@ mod tests {
         assert!(all.len() > 30, "{} shaders", all.len());
     }
 
-    /// Mesa's software Vulkan compiles a shader anew for each picture, and keeps it, where a branch depends on parameters alone and the shader is much shorter
-    /// without it: `select` takes its place.
+    /// Names of the parameters of all shaders: what is uniform.
+    fn parameters(all: &[(String, String)]) -> Vec<&str> {
+        let declared = |line: &'_ str| -> Option<(usize, usize)> {
+            let start = line.find("var<uniform> ")? + "var<uniform> ".len();
+            Some((start, start + line[start..].find(':')?))
+        };
+        let names = all.iter().flat_map(|(_, text)| text.lines());
+        names.filter_map(|line| declared(line).map(|(start, end)| &line[start..end])).collect()
+    }
+
+    /// True where a condition names parameters and nothing else that could differ within a picture.
+    fn is_of_parameters_alone(condition: &str, parameters: &[&str]) -> bool {
+        let is_part = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '.' || letter == '(';
+        let words = condition.split(|letter| !is_part(letter)).map(|word| word.trim_start_matches('('));
+        let mut words = words.filter(|word| word.starts_with(|first: char| first.is_ascii_alphabetic())).peekable();
+        let is_parameter = |word: &str| {
+            word.starts_with("is_paper(") || parameters.contains(&word.split('.').next().unwrap_or_default())
+        };
+        words.peek().is_some() && words.all(is_parameter)
+    }
+
+    /// The conditions of a line that become branches: those of `if`, and each that `&&` and `||` join.
+    fn branches(line: &str) -> Vec<&str> {
+        let code = line.split("//").next().unwrap_or_default();
+        let joined = code.contains("&&") || code.contains("||");
+        let of_if = code.split_once("if ").filter(|(before, _)| before.trim().trim_start_matches("} else").is_empty());
+        let condition =
+            of_if.or_else(|| code.split_once("= ").or_else(|| code.split_once("return ")).filter(|_| joined));
+        condition.map_or(Vec::new(), |(_, condition)| condition.split("&&").flat_map(|part| part.split("||")).collect())
+    }
+
+    /// Mesa's software Vulkan compiles a shader anew for each picture, and keeps it, where a branch depends on parameters alone and the shader is much
+    /// shorter without it: `select`, `&` and `|` take its place.
     #[test]
     fn no_branch_depends_on_parameters_alone() {
         let all = shaders_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
-        let parameters = ["view.", "fluid.", "ground.", "is_paper()", "!is_paper()"];
-        let begins = |line: &str| {
-            let condition = line.trim_start().strip_prefix("if ").or(line.trim_start().strip_prefix("} else if "));
-            condition.is_some_and(|condition| parameters.iter().any(|parameter| condition.starts_with(parameter)))
-        };
-        let is_branch = |line: &&str| begins(line) && !line.contains(" | ") && !line.contains(" & ");
+        let parameters = parameters(&all);
+        assert!(parameters.contains(&"view") && parameters.contains(&"fluid"), "{parameters:?}");
+        let is_branch = |line: &&str| branches(line).iter().any(|one| is_of_parameters_alone(one, &parameters));
         let lines = |(name, text): &(String, String)| -> Vec<String> {
             text.lines().filter(is_branch).map(|line| format!("{name}: {}", line.trim())).collect()
         };
-        let found: Vec<String> = all.iter().flat_map(lines).collect();
+        let mut found: Vec<String> = all.iter().flat_map(lines).collect();
+        found.sort();
         // Short with either branch.
-        assert_eq!(found, ["terrain: if ground.cell.w == 0.0 {"]);
+        let known = ["terrain: if ground.cell.w == 0.0 {"];
+        let of_tone = found.extract_if(.., |line| line.starts_with("tone: ")).count();
+        assert!(found == known && of_tone == 4, "{found:#?} and {of_tone} of tone");
+    }
+
+    #[test]
+    fn branches_on_parameters_are_told_from_others() {
+        let is_one = |line: &str| branches(line).iter().any(|one| is_of_parameters_alone(one, &["view", "style"]));
+        for line in
+            ["if view.eye.w > 0.5 {", "} else if !is_paper() {", "let a = style.roof.w > 0.5 && normal.z > 0.5;"]
+        {
+            assert!(is_one(line), "{line}");
+        }
+        for line in [
+            "if moving * view.eye.w > 0.5 {",
+            "let a = view.eye.w > 0.5;",
+            "if is_paper() | (at.w < 0.5) {",
+            "return view.a > 1.5;",
+            "// if view.a {",
+        ] {
+            assert!(!is_one(line), "{line}");
+        }
     }
 
     #[test]

@@ -28,10 +28,11 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     var normal = normalize(corner.normal);
     normal = select(-normal, normal, dot(normal, to_eye) > 0.0);
     let shine = sunshine(corner.place, normal, corner.clip.xy);
-    let is_roof = style.roof.w > 0.5 && normal.z > 0.5;
+    let is_building = style.roof.w > 0.5;
+    let is_roof = is_building & (normal.z > 0.5);
     let colour = select(style.colour.rgb, style.roof.rgb, is_roof);
     var light = coated(colour, normal, to_eye, shine, style.gloss.x);
-    if style.roof.w > 0.5 && abs(normal.z) < 0.3 {
+    if is_building & (abs(normal.z) < 0.3) {
         let mirror = surroundings(reflect(-to_eye, normal)) * mirrored(dot(normal, to_eye), 0.08);
         light = mix(light, PANE + mirror, window_at(corner.place, normal));
     }
