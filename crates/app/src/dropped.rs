@@ -97,7 +97,7 @@ fn head(terrain: &Terrain) -> [f64; 2] {
     const STEPS: u32 = 400;
     let heights = |side: usize| -> Vec<(f64, [f64; 2])> {
         let places = (0..=STEPS).map(|step| at(side, f64::from(step) / f64::from(STEPS)));
-        places.filter(|place| has_data(*place)).map(|place| (terrain.height(place[0], place[1]), place)).collect()
+        places.filter(|place| has_data(*place)).map(|place| (terrain.height_once(place[0], place[1]), place)).collect()
     };
     let sides: Vec<_> = (0..4).map(heights).filter(|heights| !heights.is_empty()).collect();
     let mean = |heights: &[(f64, [f64; 2])]| heights.iter().map(|(z, _)| z).sum::<f64>() / heights.len() as f64;

@@ -63,7 +63,7 @@ fn depth_below(terrain: &Terrain, [column, row]: [usize; 2], around: isize) -> O
     let height = |east: isize, south: isize| {
         let (column, row) = (column.checked_add_signed(east * around)?, row.checked_add_signed(south * around)?);
         let [x, y] = terrain.map_grid().centre(column, row);
-        terrain.is_valid_cell(column, row).then(|| terrain.height(x, y))
+        terrain.is_valid_cell(column, row).then(|| terrain.height_once(x, y))
     };
     let mut sum = 0.0;
     for (east, south) in [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)] {

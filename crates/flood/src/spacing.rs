@@ -84,7 +84,7 @@ fn wet_area(settings: &Settings, terrain: &Terrain, folder: &Path, until: f64) -
         for column in (stride / 2..grid.columns).step_by(stride) {
             all += 1;
             let [x, y] = grid.centre(column, row);
-            let ground = terrain.height(x, y);
+            let ground = terrain.height_once(x, y);
             let is_wet = ground < highest || bodies.iter().any(|body| body.may_be_at([x, y], ground, 0.0));
             wet += usize::from(terrain.is_valid_cell(column, row) && is_wet);
         }

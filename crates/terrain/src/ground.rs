@@ -29,8 +29,8 @@ pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> R
     let mut warnings = std::mem::take(&mut raster.warnings);
     check_heights(&raster, path, &mut warnings)?;
     let size = [raster.columns, raster.rows];
-    let holes: Vec<bool> = raster.values.iter().map(|height| height.is_nan()).collect();
-    let valid = holes.contains(&true).then(|| holes.iter().map(|hole| !hole).collect());
+    let has_holes = raster.values.iter().any(|height| height.is_nan());
+    let valid = has_holes.then(|| raster.values.iter().map(|height| !height.is_nan()).collect());
     holes::close(&mut raster.values, size, no_data);
     let frame = frame(&raster).map_err(|what| TerrainError::unusable(path, what))?;
     let map_grid =
@@ -43,7 +43,7 @@ pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> R
                         smaller if that matters.";
             warnings.push(what.into());
         }
-        (bounds, resampled(&raster, bounds, &map_grid))
+        (bounds, resampled(raster, bounds, &map_grid))
     } else {
         let bounds = outside(&map_grid);
         if let Some(scale) = map_grid.frame.scale(bounds.centre()).filter(|scale| (scale - 1.0).abs() > MAX_SCALE_ERROR)
@@ -53,7 +53,7 @@ pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> R
                  proportion; project it to one that is true to scale here, e.g. UTM, with `gdalwarp -t_srs`."
             ));
         }
-        (bounds, metric(&raster, &map_grid))
+        (bounds, metric(raster, &map_grid))
     };
     Ok(Terrain { bounds, ground: Ground::Surface(surface), map_grid, valid, warnings })
 }
@@ -89,15 +89,21 @@ fn frame(raster: &Raster) -> Result<Frame, String> {
 }
 
 /// The heights from the south-west, row by row.
-fn from_south_west(raster: &Raster) -> Vec<f64> {
-    raster.values.chunks_exact(raster.columns).rev().flatten().copied().collect()
+fn from_south_west(raster: Raster) -> Vec<f64> {
+    let Raster { columns, rows, mut values, .. } = raster;
+    let (north, south) = values.split_at_mut(rows.div_ceil(2) * columns);
+    for (north, south) in north.chunks_exact_mut(columns).zip(south.chunks_exact_mut(columns).rev()) {
+        north.swap_with_slice(south);
+    }
+    values
 }
 
 /// The surface of a raster whose own coordinates are the model's but for the unit.
-fn metric(raster: &Raster, grid: &MapGrid) -> Surface {
+fn metric(raster: Raster, grid: &MapGrid) -> Surface {
+    let size = [raster.columns, raster.rows];
     let first = grid.centre(0, raster.rows - 1);
     let cell = grid.frame.to_model(raster.georeference.cell);
-    Surface::new(&from_south_west(raster), [raster.columns, raster.rows], first, cell)
+    Surface::new(from_south_west(raster), size, first, cell)
 }
 
 /// The rectangle round the cells of a raster that is not turned against the model's axes.
@@ -138,12 +144,13 @@ fn inside(grid: &MapGrid) -> Result<Bounds, String> {
 
 /// The ground over `bounds`, from the surface over the raster's own coordinates. At twice the raster's resolution, if
 /// that is not too much: at the same, tops and channels between the new nodes are flattened.
-fn resampled(raster: &Raster, bounds: Bounds, grid: &MapGrid) -> Surface {
+fn resampled(raster: Raster, bounds: Bounds, grid: &MapGrid) -> Surface {
     let south_west = raster.georeference.centre(0, raster.rows - 1);
-    let own =
-        Surface::new(&from_south_west(raster), [raster.columns, raster.rows], south_west, raster.georeference.cell);
+    let (own_size, own_cell, own_cells) =
+        ([raster.columns, raster.rows], raster.georeference.cell, raster.values.len());
+    let own = Surface::new(from_south_west(raster), own_size, south_west, own_cell);
     let size = bounds.size();
-    let finer = if 4 * raster.values.len() as u64 <= MOST_CELLS { 2.0 } else { 1.0 };
+    let finer = if 4 * own_cells as u64 <= MOST_CELLS { 2.0 } else { 1.0 };
     let wanted = grid.cell_size().map(|cell| cell / finer);
     let count = [0, 1].map(|axis: usize| (size[axis] / wanted[axis]).round().max(2.0) as usize);
     let cell = [0, 1].map(|axis: usize| size[axis] / count[axis] as f64);
@@ -158,5 +165,5 @@ fn resampled(raster: &Raster, bounds: Bounds, grid: &MapGrid) -> Surface {
             own.height_and_slope(longitude, latitude).0
         })
         .collect();
-    Surface::new(&heights, count, first, cell)
+    Surface::new(heights, count, first, cell)
 }

@@ -126,7 +126,7 @@ impl Terrain {
                 height(x, y)
             })
             .collect();
-        let surface = Surface::new(&heights, [columns, rows], map_grid.centre(0, rows - 1), map_grid.georeference.cell);
+        let surface = Surface::new(heights, [columns, rows], map_grid.centre(0, rows - 1), map_grid.georeference.cell);
         Self { bounds, ground: Ground::Surface(surface), map_grid, valid: None, warnings: Vec::new() }
     }
 
@@ -138,6 +138,16 @@ impl Terrain {
     /// Height of the ground, m. Outside the bounds that of the nearest place inside.
     pub fn height(&self, x: f64, y: f64) -> f64 {
         self.height_and_slope(x, y).0
+    }
+
+    /// [`Self::height`], for places far from each other: nothing is kept for looking at places beside them, as the
+    /// others do. Slower where the ground has not been looked at, and takes no memory.
+    pub fn height_once(&self, x: f64, y: f64) -> f64 {
+        let [x, y] = self.bounds.nearest(x, y);
+        match &self.ground {
+            Ground::Surface(surface) => surface.height_once(x, y),
+            Ground::Function(function) => function(x, y).0,
+        }
     }
 
     /// Height of the ground, m, and its slope `[dz/dx, dz/dy]`. Outside the bounds those of the nearest place inside.
@@ -223,6 +233,33 @@ impl Terrain {
 
     pub(crate) fn frame(&self) -> Arc<Frame> {
         Arc::clone(&self.map_grid.frame)
+    }
+
+    /// Lowest and highest ground at the centres of the cells of the map grid that have data, m; infinite, the lowest
+    /// above the highest, where none has.
+    pub fn height_range(&self) -> [f64; 2] {
+        let MapGrid { columns, rows, .. } = self.map_grid;
+        let none = || [f64::INFINITY, f64::NEG_INFINITY];
+        let with =
+            |[low, high]: [f64; 2], [other_low, other_high]: [f64; 2]| [low.min(other_low), high.max(other_high)];
+        let is_geographic = self.map_grid.georeference.system.as_ref().is_some_and(|system| system.geographic);
+        let own = match &self.ground {
+            Ground::Surface(surface) if !is_geographic => Some(surface),
+            _ => None,
+        };
+        let height = |column: usize, row: usize| match own {
+            // Its grid is the map's.
+            Some(surface) => surface.height_of_node(column, rows - 1 - row),
+            None => {
+                let [x, y] = self.map_grid.centre(column, row);
+                self.height_once(x, y)
+            }
+        };
+        let of_row = |row: usize| {
+            let valid = (0..columns).filter(|column| self.is_valid_cell(*column, row));
+            valid.fold(none(), |range, column| with(range, [height(column, row); 2]))
+        };
+        (0..rows).into_par_iter().map(of_row).reduce(none, with)
     }
 
     /// Warnings about this terrain, in sentences.

@@ -273,8 +273,13 @@ fn height_field(ground: &Ground, heights: f64, most: usize) -> HeightField {
 pub(super) fn sampled(ground: &Ground, heights: f64, nodes: [usize; 2]) -> HeightField {
     let bounds = ground.bounds();
     let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
+    let grid = ground.map_grid();
+    let is_coarser = nodes[0] < grid.columns || nodes[1] < grid.rows;
     HeightField::sampled(from, to, nodes, |x, y| {
-        if has_data(ground, [x, y]) { heights * ground.height(x, y) } else { f64::NAN }
+        if !has_data(ground, [x, y]) {
+            return f64::NAN;
+        }
+        heights * if is_coarser { ground.height_once(x, y) } else { ground.height(x, y) }
     })
 }
 

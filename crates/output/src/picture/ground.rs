@@ -51,7 +51,7 @@ impl Ground {
                 [0, 1].map(|axis| window.first[axis] + (part[axis] * window.count[axis] as f64) as usize);
             let own = [corner[0] + part[0] * own_extent[0], corner[1] - part[1] * own_extent[1]];
             let [x, y] = terrain.to_model(own);
-            if terrain.is_valid_cell(column, row) { terrain.height(x, y) as f32 } else { f32::NAN }
+            if terrain.is_valid_cell(column, row) { terrain.height_once(x, y) as f32 } else { f32::NAN }
         };
         let heights = (0..pixels[0] * pixels[1]).into_par_iter().map(height).collect();
         let system = place.system.as_ref();

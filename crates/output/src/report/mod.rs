@@ -66,13 +66,7 @@ struct Whole {
 impl Whole {
     fn of(terrain: &Terrain) -> Self {
         let grid = terrain.map_grid();
-        let cells = (0..grid.columns * grid.rows).map(|cell| [cell % grid.columns, cell / grid.columns]);
-        let heights = cells.filter(|[column, row]| terrain.is_valid_cell(*column, *row)).map(|[column, row]| {
-            let [x, y] = grid.centre(column, row);
-            terrain.height(x, y)
-        });
-        let range = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| [low.min(z), high.max(z)]);
-        Self { grid: [grid.columns, grid.rows], cell: grid.cell_size(), heights: range }
+        Self { grid: [grid.columns, grid.rows], cell: grid.cell_size(), heights: terrain.height_range() }
     }
 
     /// The window round the cells with a value and the marked positions except obstacles.

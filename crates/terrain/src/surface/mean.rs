@@ -10,10 +10,11 @@
 //! Along a straight part of a side within one patch F is a polynomial of degree 7 (3 along x, 4 along y), which four
 //! Gauss-Legendre points integrate exactly.
 
-use super::{Surface, along_lanes, hermite, hermite_lanes, patch, weighted};
+use super::blocks::{Node, Nodes, SIDE, STRIDE};
+use super::{Surface, along_lanes, hermite, hermite_lanes, patch, sides_of, weighted};
 use crate::Bounds;
 use crate::mean::Outline;
-use corpuscle_simd::{LANES, Lanes, LanesExt, Level, Simd, SimdBase, dispatch, transposed};
+use corpuscle_simd::{LANES, Lanes, LanesExt, Level, Simd, SimdBase, dispatch};
 use std::ops::Range;
 
 /// Places, as shares of the length, and weights of the four-point Gauss-Legendre rule (Abramowitz and Stegun, Handbook
@@ -31,9 +32,6 @@ const END_SLOPE: f64 = 1.0 / 12.0;
 
 /// Whole patches in a row up to which they are added one by one: fewer look-ups in memory than with running sums.
 const SHORT_RUN: usize = 4;
-
-/// Patches after which running sums begin anew, so that rounding does not grow with the length of a row.
-const SUMS_BLOCK: usize = 64;
 
 /// Below this length in patches the quotient of integral and area loses more to rounding than it is worth.
 const MIN_LENGTH: f64 = 1e-5;
@@ -58,41 +56,41 @@ impl Surface {
 
     /// Sum of the integrals of neighbouring whole patches in a row, in m times the area of a patch.
     fn sum_of_row(&self, row: usize, columns: Range<usize>) -> f64 {
-        let sums = self.row_sums[row].get_or_init(|| self.running_sums(row));
         let mut sum = 0.0;
         let mut from = columns.start;
         while from < columns.end {
-            let to = columns.end.min((from / SUMS_BLOCK + 1) * SUMS_BLOCK);
-            let before = if from.is_multiple_of(SUMS_BLOCK) { 0.0 } else { sums[from - 1] };
-            sum += sums[to - 1] - before;
+            let to = columns.end.min((from / SIDE + 1) * SIDE);
+            let sums = self.running_sums(from, row);
+            let before = if from.is_multiple_of(SIDE) { 0.0 } else { sums[from % SIDE - 1] };
+            sum += sums[(to - 1) % SIDE] - before;
             from = to;
         }
         sum
     }
 
-    /// For each patch of a row the sum of the integrals from the start of its block up to and with it. Computed by one
-    /// thread: a parallel task that waited in here could be given another polygon that needs the same row, and wait for
-    /// itself.
-    fn running_sums(&self, row: usize) -> Box<[f64]> {
-        let mut sum = 0.0;
-        let with = |column: usize| {
-            let before = if column.is_multiple_of(SUMS_BLOCK) { 0.0 } else { sum };
-            sum = before + whole_patch(self.line(row, column, 0.0), self.line(row, column + 1, 0.0));
-            sum
-        };
-        (0..self.patches[0]).map(with).collect()
+    /// Of the block that holds a patch, for each patch of its row the sum of the integrals up to and with it. Sums begin
+    /// anew in each block, so that rounding does not grow with the length of a row.
+    fn running_sums(&self, column: usize, row: usize) -> &[f64] {
+        let block = self.block(column, row).0;
+        let sums = block.row_sums.get_or_init(|| {
+            let mut sum = 0.0;
+            let mut with = |patch: usize| {
+                let node = patch / SIDE * STRIDE + patch % SIDE;
+                let before = if patch.is_multiple_of(SIDE) { 0.0 } else { sum };
+                sum = before + whole_patch(line(&*block.nodes, node, 0.0), line(&*block.nodes, node + 1, 0.0));
+                sum
+            };
+            (0..SIDE * SIDE).map(&mut with).collect()
+        });
+        &sums[row % SIDE * SIDE..][..SIDE]
     }
 
-    /// Integral of the height above `level` over the height of a row of patches, on the line west of a column of
-    /// patches, and its derivative along x. Along x the integral is the Hermite cubic through these.
+    /// Integral of the height above `level` over the height of a patch, on the line on its west side or, with `east` = 1,
+    /// on its east side, and its derivative along x. Along x the integral is the Hermite cubic through these.
     #[inline]
-    fn line(&self, row: usize, column: usize, level: f64) -> [f64; 2] {
-        let south = row * self.stride + column;
-        let (south, north) = (&self.nodes[south], &self.nodes[south + self.stride]);
-        [
-            0.5 * (south.height + north.height) - level + END_SLOPE * (south.slope_y - north.slope_y),
-            0.5 * (south.slope_x + north.slope_x) + END_SLOPE * (south.twist - north.twist),
-        ]
+    fn line(&self, row: usize, column: usize, east: usize, level: f64) -> [f64; 2] {
+        let (block, south_west) = self.block(column, row);
+        line(&*block.nodes, south_west + east, level)
     }
 
     /// Position in patches from the south-west node of the ring.
@@ -100,6 +98,16 @@ impl Surface {
     fn position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [(x - self.corner[0]) * self.per_metre[0], (y - self.corner[1]) * self.per_metre[1]]
     }
+}
+
+/// [`Surface::line`] north of a node of a block.
+#[inline(always)]
+fn line(nodes: &[Node], south: usize, level: f64) -> [f64; 2] {
+    let (south, north) = (&nodes[south], &nodes[south + STRIDE]);
+    [
+        0.5 * (south.height + north.height) - level + END_SLOPE * (south.slope_y - north.slope_y),
+        0.5 * (south.slope_x + north.slope_x) + END_SLOPE * (south.twist - north.twist),
+    ]
 }
 
 /// Integral over a whole patch from [`Surface::line`] west and east of it.
@@ -146,6 +154,9 @@ struct Region<'a> {
     middle: usize,
     /// Height from which all heights are counted, m: the rounding then goes with the differences in height.
     level: f64,
+    /// The nodes of the block that holds all the patches, and the index of the first patch's south-west node, where there
+    /// is such a block: it is looked up once.
+    block: Option<(&'a Nodes, usize)>,
 }
 
 impl<'a> Region<'a> {
@@ -168,12 +179,18 @@ impl<'a> Region<'a> {
         let shift = first.map(|index| index as f64);
         let shifted = |position: [f64; 2]| [0, 1].map(|axis| position[axis] - shift[axis]);
         let middle = 0;
-        let level = surface.nodes[first[1] * surface.stride + first[0]].height;
+        let (block, south_west) = surface.block(first[0], first[1]);
+        let level = block.nodes[south_west].height;
         let last = [0, 1].map(|axis| surface.patches[axis] - 1 - first[axis]);
         let (low, high, least, most) = (shifted(low), shifted(high), shifted(least), shifted(most));
-        let mut region = Self { surface, first, shift, low, high, least, most, last, middle, level };
+        let block = Some((&*block.nodes, south_west));
+        let mut region = Self { surface, first, shift, low, high, least, most, last, middle, level, block };
         let centre = [0, 1].map(|axis| 0.5 * (region.least[axis] + region.most[axis]));
         region.middle = region.patch_at(centre)[0];
+        let farthest = region.patch_at(region.most);
+        if (0..2).any(|axis| first[axis] % SIDE + farthest[axis] >= SIDE) {
+            region.block = None;
+        }
         region
     }
 
@@ -185,11 +202,17 @@ impl<'a> Region<'a> {
     /// Lowest and highest node of the patches that the bounding rectangle touches, m.
     fn node_range(&self) -> [f64; 2] {
         let [from, to] = [self.least, self.most].map(|corner| self.patch_at(corner));
-        let columns = self.first[0] + from[0]..self.first[0] + to[0] + 2;
-        let rows = self.first[1] + from[1]..self.first[1] + to[1] + 2;
-        let nodes = rows.flat_map(|row| &self.surface.nodes[row * self.surface.stride..][columns.clone()]);
-        nodes
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], node| [low.min(node.height), high.max(node.height)])
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for row in self.first[1] + from[1]..=self.first[1] + to[1] {
+            for column in self.first[0] + from[0]..=self.first[0] + to[0] {
+                let (block, south_west) = self.surface.block(column, row);
+                for node in [south_west, south_west + 1, south_west + STRIDE, south_west + STRIDE + 1] {
+                    let height = block.nodes[node].height;
+                    range = [range[0].min(height), range[1].max(height)];
+                }
+            }
+        }
+        range
     }
 
     /// The position inside the bounds nearest to one.
@@ -296,13 +319,10 @@ impl<'a> Region<'a> {
     fn up_to(&self, row: usize, x: f64) -> f64 {
         let inside = x.max(self.low[0]).min(self.high[0]);
         let column = (inside as usize).min(self.last[0]);
-        let whole = if column >= self.middle {
-            self.whole_patches(row, self.middle..column)
-        } else {
-            -self.whole_patches(row, column..self.middle)
-        };
-        let line = |column| self.surface.line(self.first[1] + row, self.first[0] + column, self.level);
-        let (west, east) = (line(column), line(column + 1));
+        let (low, high) = (self.middle.min(column), self.middle.max(column));
+        let run = Run { region: self, row, first: low };
+        let whole = if column == high { run.whole_patches(0..high - low) } else { -run.whole_patches(0..high - low) };
+        let (west, east) = (run.line(column - low, 0), run.line(column - low, 1));
         let part = inside - column as f64;
         let mut integral = along(&hermite_integrals(part), west, east);
         if x != inside {
@@ -310,19 +330,41 @@ impl<'a> Region<'a> {
         }
         whole + integral
     }
+}
 
-    /// Sum of the integrals of whole patches in a row.
-    fn whole_patches(&self, row: usize, columns: Range<usize>) -> f64 {
-        let count = columns.len();
-        let row = self.first[1] + row;
-        let columns = self.first[0] + columns.start..self.first[0] + columns.end;
-        if count > SHORT_RUN {
-            return self.surface.sum_of_row(row, columns) - self.level * count as f64;
+/// Neighbouring patches in a row.
+struct Run<'a> {
+    region: &'a Region<'a>,
+    row: usize,
+    /// Column of the patch from which the others are counted.
+    first: usize,
+}
+
+impl Run<'_> {
+    /// [`Surface::line`] of a patch.
+    #[inline(always)]
+    fn line(&self, patch: usize, east: usize) -> [f64; 2] {
+        let Region { surface, first, level, block, .. } = *self.region;
+        let column = self.first + patch;
+        match block {
+            Some((nodes, south_west)) => line(nodes, south_west + self.row * STRIDE + column + east, level),
+            None => surface.line(first[1] + self.row, first[0] + column, east, level),
         }
-        let line = |column| self.surface.line(row, column, self.level);
+    }
+
+    /// Sum of the integrals of whole patches.
+    #[inline(always)]
+    fn whole_patches(&self, patches: Range<usize>) -> f64 {
+        let count = patches.len();
+        if count > SHORT_RUN {
+            let Region { surface, first, level, .. } = *self.region;
+            let west = first[0] + self.first;
+            let sum = surface.sum_of_row(first[1] + self.row, west + patches.start..west + patches.end);
+            return sum - level * count as f64;
+        }
         // On lines between two patches the slopes cancel.
-        let between: f64 = (columns.start + 1..columns.end).map(|column| line(column)[0]).sum();
-        if count > 0 { between + whole_patch(line(columns.start), line(columns.end)) } else { 0.0 }
+        let between: f64 = (patches.start + 1..patches.end).map(|patch| self.line(patch, 0)[0]).sum();
+        if count > 0 { between + whole_patch(self.line(patches.start, 0), self.line(patches.end - 1, 1)) } else { 0.0 }
     }
 }
 
@@ -377,7 +419,7 @@ impl<S: Simd, const INSIDE: bool> Parts<S, INSIDE> {
     #[inline(always)]
     fn integrate_pending(&mut self, region: &Region) {
         let simd = self.simd;
-        let (south, north) = (self.nodes(region, 0), self.nodes(region, 1));
+        let [south, north] = self.nodes(region);
         let [x, y] = [Lanes::from_slice(simd, &self.from[0]), Lanes::from_slice(simd, &self.from[1])];
         let length = [Lanes::from_slice(simd, &self.length[0]), Lanes::from_slice(simd, &self.length[1])];
         let column = Lanes::from_slice(simd, &self.column.map(|column| column as f64));
@@ -405,22 +447,24 @@ impl<S: Simd, const INSIDE: bool> Parts<S, INSIDE> {
         self.length = [[0.0; LANES]; 2];
     }
 
-    /// Two neighbouring nodes in a row, south or north in the patch of each part: west's and east's height above the
-    /// level and derivatives.
+    /// The two nodes on the south side of the patch of each part, and on its north side: west's and east's height above
+    /// the level and derivatives.
     #[inline(always)]
-    fn nodes(&self, region: &Region, north: usize) -> [Lanes<S>; LANES] {
-        let numbers: &[f64] = bytemuck::must_cast_slice(&region.surface.nodes);
-        let stride = region.surface.stride;
-        let first = (region.first[1] + north) * stride + region.first[0];
-        let mut nodes = transposed(std::array::from_fn(
-            #[inline(always)]
-            |lane| {
-                let west = 4 * (first + self.row[lane] * stride + self.column[lane]);
-                Lanes::from_slice(self.simd, &numbers[west..west + LANES])
-            },
-        ));
-        (nodes[0], nodes[4]) = (nodes[0] - region.level, nodes[4] - region.level);
-        nodes
+    fn nodes(&self, region: &Region) -> [[Lanes<S>; LANES]; 2] {
+        let [mut south, mut north] = if let Some((nodes, first)) = region.block {
+            let mut south_west = self.column;
+            for (node, row) in south_west.iter_mut().zip(self.row) {
+                *node += first + row * STRIDE;
+            }
+            sides_of(self.simd, [nodes; LANES], south_west)
+        } else {
+            let columns = self.column.map(|column| region.first[0] + column);
+            let rows = self.row.map(|row| region.first[1] + row);
+            region.surface.sides_of_patches(self.simd, columns, rows)
+        };
+        (south[0], south[4]) = (south[0] - region.level, south[4] - region.level);
+        (north[0], north[4]) = (north[0] - region.level, north[4] - region.level);
+        [south, north]
     }
 
     /// All line integrals with the jumps of F.

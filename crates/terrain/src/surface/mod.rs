@@ -6,28 +6,14 @@
 //! property of Bernstein polynomials): the surface never over- or undershoots the data, makes no pits and no bumps of
 //! its own, and is exact for a plane.
 
+mod blocks;
 mod mean;
 
 use crate::Bounds;
-use bytemuck::{Pod, Zeroable};
+use blocks::{Block, Heights, Node, Nodes, SIDE, STRIDE};
 use corpuscle_simd::{LANES, Lanes, Simd, SimdBase, transposed};
 use rayon::prelude::*;
 use std::sync::OnceLock;
-
-/// A slope is at most this many times the lesser of the two one-sided differences. 3 keeps an edge of a patch monotone
-/// (Fritsch and Carlson 1980); half of that keeps the inner Bezier points in range as well, as they add two slopes.
-const STEEPEST: f64 = 1.5;
-
-/// What is known of the ground at one node, in units of cells: derivatives are differences per cell.
-/// In this order two neighbouring numbers are treated equally, which the compiler turns into vector instructions.
-#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
-#[repr(C)]
-struct Node {
-    height: f64,
-    slope_y: f64,
-    slope_x: f64,
-    twist: f64,
-}
 
 /// A smooth surface as the nodes of its bicubic Hermite patches, in single precision.
 #[derive(Debug, Clone)]
@@ -76,67 +62,133 @@ impl GroundPatches {
 }
 
 /// A smooth surface through heights on a regular grid.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct Surface {
-    /// Nodes of the grid and one ring round it, row by row from the south-west.
-    nodes: Vec<Node>,
-    /// Nodes in a row, ring included.
-    stride: usize,
+    heights: Heights,
+    /// Blocks of patches, row by row from the south-west, each made when it is first looked at.
+    blocks: Vec<OnceLock<Block>>,
+    /// Blocks in a row.
+    blocks_in_row: usize,
     /// Patches in each direction.
     patches: [usize; 2],
     /// Place of the south-west node of the ring.
     corner: [f64; 2],
     /// Nodes per metre.
     per_metre: [f64; 2],
-    /// For each row of patches the running sums of their integrals, made when first needed.
-    row_sums: Vec<OnceLock<Box<[f64]>>>,
 }
 
 impl Surface {
     /// The surface through `heights`, `columns` by `rows`, row by row from the south-west, the first at `first`,
     /// neighbours `cell` apart. It reaches one cell beyond the outermost nodes, going on as it ends there.
-    pub(crate) fn new(heights: &[f64], [columns, rows]: [usize; 2], first: [f64; 2], cell: [f64; 2]) -> Self {
+    pub(crate) fn new(heights: Vec<f64>, [columns, rows]: [usize; 2], first: [f64; 2], cell: [f64; 2]) -> Self {
         assert!(columns > 0 && rows > 0 && heights.len() == columns * rows, "a surface needs all its heights");
-        let padded = with_ring(heights, [columns, rows]);
-        let stride = columns + 2;
+        let patches = [columns + 1, rows + 1];
+        let [blocks_in_row, rows_of_blocks] = patches.map(|count| count.div_ceil(SIDE));
         Self {
-            nodes: nodes(&padded, stride, rows + 2),
-            stride,
-            patches: [columns + 1, rows + 1],
+            heights: Heights::new(heights, [columns, rows]),
+            blocks: (0..blocks_in_row * rows_of_blocks).map(|_| OnceLock::new()).collect(),
+            blocks_in_row,
+            patches,
             corner: [first[0] - cell[0], first[1] - cell[1]],
             per_metre: [1.0 / cell[0], 1.0 / cell[1]],
-            row_sums: vec![OnceLock::new(); rows + 1],
         }
     }
 
-    /// The nodes for a device that has single precision only: heights above `level`.
+    /// The block that holds a patch, and the index in it of the patch's south-west node.
+    #[inline(always)]
+    fn block(&self, column: usize, row: usize) -> (&Block, usize) {
+        let index = row / SIDE * self.blocks_in_row + column / SIDE;
+        let block = match self.blocks[index].get() {
+            Some(block) => block,
+            None => self.make_block(index),
+        };
+        (block, row % SIDE * STRIDE + column % SIDE)
+    }
+
+    /// Made by one thread: a parallel task that waited in here could be given another that needs the same block, and
+    /// wait for itself.
+    #[cold]
+    #[inline(never)]
+    fn make_block(&self, index: usize) -> &Block {
+        self.blocks[index].get_or_init(|| Block::new(self.nodes_of_block(index)))
+    }
+
+    /// The nodes of a block, [`STRIDE`] in a row.
+    fn nodes_of_block(&self, index: usize) -> Box<Nodes> {
+        let first = [index % self.blocks_in_row * SIDE, index / self.blocks_in_row * SIDE];
+        let count = [0, 1].map(|axis| (self.patches[axis] - first[axis]).min(SIDE) + 1);
+        let mut nodes: Box<Nodes> = bytemuck::allocation::zeroed_box();
+        for (row, line) in self.heights.nodes(first, count).chunks_exact(count[0]).enumerate() {
+            nodes[row * STRIDE..][..count[0]].copy_from_slice(line);
+        }
+        nodes
+    }
+
+    /// The nodes for a device that has single precision only: heights above `level`. No block is kept for it.
     pub(crate) fn patches_above(&self, level: f64) -> GroundPatches {
         let above =
             |node: &Node| [node.height - level, node.slope_y, node.slope_x, node.twist].map(|value| value as f32);
-        GroundPatches {
-            nodes: self.nodes.par_iter().with_min_len(4096).map(above).collect(),
-            size: [self.stride, self.patches[1] + 1],
-            corner: self.corner,
-            per_metre: self.per_metre,
-        }
+        let size = self.patches.map(|count| count + 1);
+        let mut nodes = vec![[0.0; 4]; size[0] * size[1]];
+        // The last row of nodes belongs to the last row of blocks, and so do columns.
+        nodes.par_chunks_mut(size[0] * SIDE).enumerate().for_each(|(chunk, nodes)| {
+            let row_of_blocks = (chunk * SIDE).min(self.patches[1] - 1) / SIDE;
+            let first_row = chunk * SIDE - row_of_blocks * SIDE;
+            for column_of_blocks in 0..self.blocks_in_row {
+                let made = self.nodes_of_block(row_of_blocks * self.blocks_in_row + column_of_blocks);
+                let first = column_of_blocks * SIDE;
+                let count = if column_of_blocks + 1 < self.blocks_in_row { SIDE } else { size[0] - first };
+                for (row, line) in nodes.chunks_exact_mut(size[0]).enumerate() {
+                    let own = &made[(first_row + row) * STRIDE..][..count];
+                    line[first..first + count].iter_mut().zip(own).for_each(|(node, own)| *node = above(own));
+                }
+            }
+        });
+        GroundPatches { nodes, size, corner: self.corner, per_metre: self.per_metre }
     }
 
     /// Height and slope `[dz/dx, dz/dy]`; the nearest edge's outside the ring. Never panics.
     #[inline]
     pub(crate) fn height_and_slope(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
+        let ([column, row], place) = self.patch_at(x, y);
+        let (block, south) = self.block(column, row);
+        let (south, north) = (pair(&*block.nodes, south), pair(&*block.nodes, south + STRIDE));
+        self.between(south, north, place)
+    }
+
+    /// The height that [`Self::height_and_slope`] gives, without making a block for it.
+    pub(crate) fn height_once(&self, x: f64, y: f64) -> f64 {
+        let ([column, row], place) = self.patch_at(x, y);
+        if self.blocks[row / SIDE * self.blocks_in_row + column / SIDE].get().is_some() {
+            return self.height_and_slope(x, y).0;
+        }
+        let nodes = self.heights.nodes([column, row], [2, 2]);
+        self.between(pair(&nodes, 0), pair(&nodes, 2), place).0
+    }
+
+    /// The height given at a node of the grid, counted from the south-west.
+    pub(crate) fn height_of_node(&self, column: usize, row: usize) -> f64 {
+        self.heights.at(column, row)
+    }
+
+    /// Column and row of the patch that holds a place, and where in it.
+    #[inline(always)]
+    fn patch_at(&self, x: f64, y: f64) -> ([usize; 2], [f64; 2]) {
         let (column, u) = patch((x - self.corner[0]) * self.per_metre[0], self.patches[0]);
         let (row, v) = patch((y - self.corner[1]) * self.per_metre[1], self.patches[1]);
-        let south = row * self.stride + column;
-        let north = south + self.stride;
-        let (south_west, south_east) = pair(&self.nodes, south);
-        let (north_west, north_east) = pair(&self.nodes, north);
+        ([column, row], [u, v])
+    }
+
+    /// Height and slope in a patch from its south-west and south-east, north-west and north-east nodes.
+    #[inline(always)]
+    fn between(&self, south: (&Node, &Node), north: (&Node, &Node), [u, v]: [f64; 2]) -> (f64, [f64; 2]) {
         let (bu, du) = hermite(u);
         let (bv, dv) = hermite(v);
         // Along the two sides that run in x: height and y-slope, and their x-derivatives.
-        let [south_height, south_slope] = along(&bu, south_west, south_east);
-        let [north_height, north_slope] = along(&bu, north_west, north_east);
-        let [south_dx, south_twist] = along(&du, south_west, south_east);
-        let [north_dx, north_twist] = along(&du, north_west, north_east);
+        let [south_height, south_slope] = along(&bu, south.0, south.1);
+        let [north_height, north_slope] = along(&bu, north.0, north.1);
+        let [south_dx, south_twist] = along(&du, south.0, south.1);
+        let [north_dx, north_twist] = along(&du, north.0, north.1);
         let across = |w: &[f64; 4], p: f64, q: f64, dp: f64, dq: f64| w[0] * p + w[1] * q + w[2] * dp + w[3] * dq;
         let height = across(&bv, south_height, north_height, south_slope, north_slope);
         let slope_x = across(&bv, south_dx, north_dx, south_twist, north_twist);
@@ -149,18 +201,7 @@ impl Surface {
     pub(crate) fn heights_and_slopes<S: Simd>(&self, simd: S, x: Lanes<S>, y: Lanes<S>) -> [Lanes<S>; 3] {
         let (columns, u) = patches(simd, (x - self.corner[0]) * self.per_metre[0], self.patches[0]);
         let (rows, v) = patches(simd, (y - self.corner[1]) * self.per_metre[1], self.patches[1]);
-        // Two neighbours in a row make eight numbers: west's and east's height, y-slope, x-slope and twist.
-        let numbers: &[f64] = bytemuck::must_cast_slice(&self.nodes);
-        let pairs = |north: usize| {
-            transposed(std::array::from_fn(
-                #[inline(always)]
-                |lane| {
-                    let west = 4 * ((rows[lane] + north) * self.stride + columns[lane]);
-                    Lanes::from_slice(simd, &numbers[west..west + LANES])
-                },
-            ))
-        };
-        let (south, north) = (pairs(0), pairs(1));
+        let [south, north] = self.sides_of_patches(simd, columns, rows);
         let (bu, du) = hermite_lanes(u);
         let (bv, dv) = hermite_lanes(v);
         let [south_height, south_slope] = along_lanes(&bu, &south);
@@ -172,6 +213,45 @@ impl Surface {
         let slope_y = weighted(&dv, [south_height, north_height, south_slope, north_slope]);
         [height, slope_x * self.per_metre[0], slope_y * self.per_metre[1]]
     }
+
+    /// [`sides_of`] patches anywhere.
+    #[inline(always)]
+    fn sides_of_patches<S: Simd>(
+        &self,
+        simd: S,
+        columns: [usize; LANES],
+        rows: [usize; LANES],
+    ) -> [[Lanes<S>; LANES]; 2] {
+        let mut south_west = [0; LANES];
+        let nodes = std::array::from_fn(
+            #[inline(always)]
+            |lane| {
+                let (block, index) = self.block(columns[lane], rows[lane]);
+                south_west[lane] = index;
+                &*block.nodes
+            },
+        );
+        sides_of(simd, nodes, south_west)
+    }
+}
+
+/// The two nodes on the south side of each patch, and on its north side: west's and east's height, y-slope, x-slope and
+/// twist. Of each patch the nodes of its block and the index of its south-west node are given.
+#[inline(always)]
+fn sides_of<S: Simd>(simd: S, nodes: [&Nodes; LANES], south_west: [usize; LANES]) -> [[Lanes<S>; LANES]; 2] {
+    [side_of(simd, nodes, south_west), side_of(simd, nodes, south_west.map(|node| node + STRIDE))]
+}
+
+/// Pairs of neighbouring nodes in a row, the first at `west` in its block.
+#[inline(always)]
+fn side_of<S: Simd>(simd: S, nodes: [&Nodes; LANES], west: [usize; LANES]) -> [Lanes<S>; LANES] {
+    transposed(std::array::from_fn(
+        #[inline(always)]
+        |lane| {
+            let numbers: &[f64] = bytemuck::must_cast_slice(nodes[lane]);
+            Lanes::from_slice(simd, &numbers[4 * west[lane]..][..LANES])
+        },
+    ))
 }
 
 /// [`patch`] lane by lane.
@@ -242,90 +322,6 @@ fn hermite(t: f64) -> ([f64; 4], [f64; 4]) {
     ([1.0 - right, right, t * s * s, -t * t * s], [-rise, rise, s * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)])
 }
 
-/// The heights with one ring of cells round them in which the ground goes on as it ends: with the lesser of the last
-/// two differences, so that a cliff at the edge does not dig a pit beyond it.
-fn with_ring(heights: &[f64], [columns, rows]: [usize; 2]) -> Vec<f64> {
-    let beyond = |line: &dyn Fn(usize) -> f64, length: usize| {
-        let [last, before, third] = [0, 1.min(length - 1), 2.min(length - 1)].map(line);
-        last + if length > 2 { lesser(last - before, before - third) } else { last - before }
-    };
-    let stride = columns + 2;
-    let mut padded = vec![0.0; stride * (rows + 2)];
-    for (row, line) in heights.chunks_exact(columns).enumerate() {
-        let target = &mut padded[(row + 1) * stride..][..stride];
-        target[1..=columns].copy_from_slice(line);
-        target[0] = beyond(&|i| line[i], columns);
-        target[stride - 1] = beyond(&|i| line[columns - 1 - i], columns);
-    }
-    for column in 0..stride {
-        padded[column] = beyond(&|i| padded[(i + 1) * stride + column], rows);
-        padded[(rows + 1) * stride + column] = beyond(&|i| padded[(rows - i) * stride + column], rows);
-    }
-    padded
-}
-
-/// The one nearer to 0 where both have the same sign, else 0.
-fn lesser(a: f64, b: f64) -> f64 {
-    if a * b <= 0.0 { 0.0 } else { a.signum() * a.abs().min(b.abs()) }
-}
-
-/// The slope at a node, from the differences before and after it: the mean, limited.
-fn limited(before: f64, after: f64) -> f64 {
-    lesser(0.5 * (before + after), STEEPEST * lesser(before, after))
-}
-
-/// Heights, limited slopes and limited twists of all nodes.
-fn nodes(heights: &[f64], stride: usize, rows: usize) -> Vec<Node> {
-    // Beyond the grid's ends the ground goes on with the last difference.
-    let difference = |index: usize, step: usize, position: usize, length: usize| {
-        let after = (position + 1 < length).then(|| heights[index + step] - heights[index]);
-        let before = (position > 0).then(|| heights[index] - heights[index - step]);
-        (before.or(after).unwrap_or(0.0), after.or(before).unwrap_or(0.0))
-    };
-    let mut nodes: Vec<Node> = (0..heights.len())
-        .into_par_iter()
-        .with_min_len(4096)
-        .map(|index| {
-            let (west, east) = difference(index, 1, index % stride, stride);
-            let (south, north) = difference(index, stride, index / stride, rows);
-            Node { height: heights[index], slope_x: limited(west, east), slope_y: limited(south, north), twist: 0.0 }
-        })
-        .collect();
-    let twists: Vec<f64> =
-        (0..nodes.len()).into_par_iter().with_min_len(4096).map(|i| limited_twist(&nodes, i, stride, rows)).collect();
-    for (node, twist) in nodes.iter_mut().zip(twists) {
-        node.twist = twist;
-    }
-    nodes
-}
-
-/// The twist at a node: the central difference of the y-slopes along x, limited so that the inner Bezier point next to
-/// this node in each of the four patches round it stays between the lowest and the highest corner of that patch.
-fn limited_twist(nodes: &[Node], index: usize, stride: usize, rows: usize) -> f64 {
-    let (column, row) = (index % stride, index / stride);
-    if column == 0 || column + 1 == stride || row == 0 || row + 1 == rows {
-        return 0.0;
-    }
-    let node = nodes[index];
-    let along_x = nodes[index + 1].slope_y - nodes[index - 1].slope_y;
-    let along_y = nodes[index + stride].slope_x - nodes[index - stride].slope_x;
-    let mut twist = 0.25 * (along_x + along_y);
-    for (sx, sy) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
-        let beside = if sx > 0.0 { index + 1 } else { index - 1 };
-        let shift = |i: usize| if sy > 0.0 { i + stride } else { i - stride };
-        let corners = [index, beside, shift(index), shift(beside)].map(|i| nodes[i].height);
-        let low = corners.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = corners.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        // Bezier point: height + sx slope_x / 3 + sy slope_y / 3 + sx sy twist / 9.
-        let without = node.height + (sx * node.slope_x + sy * node.slope_y) / 3.0;
-        let sign = sx * sy;
-        let [least, most] = [(low - without) * 9.0, (high - without) * 9.0].map(|bound| bound * sign);
-        // 0 always lies between the two, but for rounding: `STEEPEST` sees to it.
-        twist = twist.max(least.min(most).min(0.0)).min(least.max(most).max(0.0));
-    }
-    twist
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -336,7 +332,7 @@ mod tests {
         let heights: Vec<f64> = (0..columns * rows)
             .map(|i| height(FIRST[0] + CELL[0] * (i % columns) as f64, FIRST[1] + CELL[1] * (i / columns) as f64))
             .collect();
-        Surface::new(&heights, [columns, rows], FIRST, CELL)
+        Surface::new(heights, [columns, rows], FIRST, CELL)
     }
 
     const FIRST: [f64; 2] = [100.0, -30.0];
@@ -378,11 +374,38 @@ mod tests {
         }
     }
 
+    #[test]
+    fn one_look_keeps_nothing_and_gives_the_same() {
+        let hills = |x: f64, y: f64| 5.0 * (0.3 * x).sin() + (0.2 * y).cos();
+        let [surface, other] = [surface(150, 70, hills), surface(150, 70, hills)];
+        for place in 0..500_u32 {
+            let (x, y) = (90.0 + 0.63 * f64::from(place), -40.0 + 0.73 * f64::from(place * 7 % 500));
+            assert_eq!(surface.height_once(x, y).to_bits(), other.height_and_slope(x, y).0.to_bits(), "{x} {y}");
+        }
+        assert!(surface.blocks.iter().all(|block| block.get().is_none()));
+        assert!(other.blocks.iter().all(|block| block.get().is_some()));
+    }
+
+    #[test]
+    fn nodes_for_a_device_are_those_of_the_blocks() {
+        // One patch more than blocks, as many as blocks, and fewer than a block.
+        for [columns, rows] in [[64, 127], [127, 63], [3, 2]] {
+            let surface = surface(columns, rows, |x, y| (0.1 * x * y).sin());
+            let GroundPatches { nodes, size, .. } = surface.patches_above(0.0);
+            assert_eq!(size, [columns + 2, rows + 2]);
+            let whole = surface.heights.nodes([0, 0], size);
+            for (node, whole) in nodes.iter().zip(&whole) {
+                let whole = [whole.height, whole.slope_y, whole.slope_x, whole.twist].map(|value| value as f32);
+                assert_eq!(*node, whole);
+            }
+        }
+    }
+
     proptest! {
         /// Between four nodes the surface stays between the lowest and the highest of them, whatever the heights.
         #[test]
         fn never_over_or_undershoots(heights in prop::collection::vec(-100.0..100.0_f64, 36), u in 0.0..1.0_f64, v in 0.0..1.0_f64) {
-            let surface = Surface::new(&heights, [6, 6], [0.0, 0.0], [1.0, 1.0]);
+            let surface = Surface::new(heights.clone(), [6, 6], [0.0, 0.0], [1.0, 1.0]);
             for row in 0..5 {
                 for column in 0..5 {
                     let corners = [0, 1, 6, 7].map(|i| heights[row * 6 + column + i]);
@@ -397,7 +420,7 @@ mod tests {
         /// The slope is the derivative of the height, and both are continuous across the sides of patches.
         #[test]
         fn slope_is_the_derivative(heights in prop::collection::vec(-10.0..10.0_f64, 36), x in 0.1..4.9_f64, y in 0.1..4.9_f64) {
-            let surface = Surface::new(&heights, [6, 6], [0.0, 0.0], [1.0, 1.0]);
+            let surface = Surface::new(heights.clone(), [6, 6], [0.0, 0.0], [1.0, 1.0]);
             let step = 1e-6;
             let height = |x, y| surface.height_and_slope(x, y).0;
             let (_, [east, north]) = surface.height_and_slope(x, y);
