@@ -391,11 +391,13 @@ impl VoronoiFlood {
     /// Makes the tiles in which there is water at the start.
     fn make_first_tiles(&mut self, bodies: &[StartWater]) -> Result<(), ModelError> {
         let layout = &self.solver.mesh.layout;
+        let may_be_at =
+            |at: [f64; 2], ground: f64| bodies.iter().any(|body| body.may_be_at(at, ground, layout.spacing()));
         let wet = |tile: &usize| {
-            layout.positions(*tile).any(|at| {
-                let ground = self.terrain.height(at[0], at[1]);
-                bodies.iter().any(|body| body.may_be_at(at, ground, layout.spacing()))
-            })
+            // Most tiles of a large terrain are dry by its heights alone.
+            let lowest = self.terrain.lowest_around(layout.positions(*tile));
+            layout.positions(*tile).any(|at| may_be_at(at, lowest))
+                && layout.positions(*tile).any(|at| may_be_at(at, self.terrain.height(at[0], at[1])))
         };
         let all = (0..layout.tiles[0] * layout.tiles[1]).into_par_iter();
         // Each process looks at its own ground.

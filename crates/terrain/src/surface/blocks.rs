@@ -105,7 +105,7 @@ impl Heights {
 
     /// The height at a node of the grid with one ring of nodes round it, on which the ground goes on as it ends.
     #[inline]
-    fn with_ring(&self, [column, row]: [usize; 2]) -> f64 {
+    pub fn with_ring(&self, [column, row]: [usize; 2]) -> f64 {
         let rows = self.size[1];
         if row == 0 {
             beyond(|step| self.with_ends(column, step), rows)

@@ -29,6 +29,9 @@ pub struct GroundPatches {
     pub per_metre: [f64; 2],
 }
 
+/// Rounding of interpolated heights, as a part of them.
+const ROUNDING: f64 = 1e-12;
+
 /// Nodes of a formula's patches, along each side of a cell of its maps.
 const NODES_A_CELL: f64 = 4.0;
 
@@ -169,6 +172,18 @@ impl Surface {
     /// The height given at a node of the grid, counted from the south-west.
     pub(crate) fn height_of_node(&self, column: usize, row: usize) -> f64 {
         self.heights.at(column, row)
+    }
+
+    /// A height below which the surface nowhere is in a rectangle, m: that of its lowest node there, less rounding.
+    pub(crate) fn lowest_in(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
+        let [first, last] = [from, to].map(|[x, y]| self.patch_at(x, y).0);
+        let mut lowest = f64::INFINITY;
+        for row in first[1]..=last[1] + 1 {
+            for column in first[0]..=last[0] + 1 {
+                lowest = lowest.min(self.heights.with_ring([column, row]));
+            }
+        }
+        lowest - ROUNDING * lowest.abs().max(1.0)
     }
 
     /// Column and row of the patch that holds a place, and where in it.
@@ -402,6 +417,20 @@ mod tests {
     }
 
     proptest! {
+        /// No place of a rectangle is below what is said to be lowest there.
+        #[test]
+        fn nothing_lies_below_the_lowest(
+            heights in prop::collection::vec(-100.0..100.0_f64, 36),
+            from in [-2.0..6.0_f64, -2.0..6.0_f64],
+            size in [0.0..4.0_f64, 0.0..4.0_f64],
+            part in [0.0..1.0_f64, 0.0..1.0_f64],
+        ) {
+            let surface = Surface::new(heights, [6, 6], [0.0, 0.0], [1.0, 1.0]);
+            let at = |part: [f64; 2]| [0, 1].map(|axis| from[axis] + part[axis] * size[axis]);
+            let [x, y] = at(part);
+            prop_assert!(surface.height_and_slope(x, y).0 >= surface.lowest_in(at([0.0; 2]), at([1.0; 2])));
+        }
+
         /// Between four nodes the surface stays between the lowest and the highest of them, whatever the heights.
         #[test]
         fn never_over_or_undershoots(heights in prop::collection::vec(-100.0..100.0_f64, 36), u in 0.0..1.0_f64, v in 0.0..1.0_f64) {
