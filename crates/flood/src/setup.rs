@@ -46,7 +46,7 @@ pub(crate) fn initial_water<'a>(
 fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -> Result<InitialWater<'a>, ModelError> {
     let depth: Box<dyn Fn(f64, f64) -> f64 + Sync + 'a> = if let Some(level) = &water.level_m {
         let level = fields::of_position(level, terrain);
-        Box::new(move |x, y| level(x, y) - terrain.height(x, y))
+        Box::new(move |x, y| level(x, y) - terrain.height_once(x, y))
     } else if let Some(depth) = &water.depth_m {
         fields::of_position(depth, terrain)
     } else if let Some(path) = &water.depth_raster {
