@@ -69,10 +69,9 @@ impl ModelKind for Kind {
     }
 
     fn complete(&self, run: &Recorded<'_>, summary: &mut Summary) -> Result<(), Error> {
-        let maps = run.model.maps();
-        let depth = maps.iter().find(|map| map.name == "max_depth");
         let observed = run.scene.flood().and_then(|scene| scene.flood.observed_extent.as_ref());
-        if let (Some(observed), Some(terrain), Some(depth)) = (observed, run.terrain, depth) {
+        let (Some(observed), Some(terrain)) = (observed, run.terrain) else { return Ok(()) };
+        if let Some(depth) = run.model.maps().iter().find(|map| map.name == "max_depth") {
             summary.extent = Some(compare_extent(observed, terrain, &depth.values)?);
         }
         Ok(())

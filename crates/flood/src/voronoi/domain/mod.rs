@@ -160,16 +160,11 @@ impl Domain {
         all
     }
 
-    /// Brings the values of a map that processes have found to the first.
-    pub fn gather_pixels<T: Copy + Serialize + DeserializeOwned>(
-        &self,
-        values: &mut [T],
-        is_found: impl Fn(&T) -> bool,
-    ) {
-        let own: Vec<(usize, T)> = values.iter().copied().enumerate().filter(|(_, value)| is_found(value)).collect();
-        for (pixel, value) in self.processes.gather(own).into_iter().flatten() {
-            values[pixel] = value;
-        }
+    /// What all processes have found, at the first; none at others.
+    pub fn gathered<T: Serialize + DeserializeOwned>(domain: Option<&Self>, found: Vec<T>) -> Option<Vec<T>> {
+        let Some(domain) = domain else { return Some(found) };
+        let all = domain.processes.gather_list(found);
+        domain.is_first().then_some(all)
     }
 
     /// Finds which cells of others are needed here, and which of here elsewhere.

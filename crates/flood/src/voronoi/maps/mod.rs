@@ -78,7 +78,7 @@ impl Record {
     }
 }
 
-/// The maps as they stand, with the water now given by `water`.
+/// The maps as they stand, with the water now given by `water`; of several processes at the first, none at others.
 pub(crate) fn maps(
     mesh: &Mesh,
     terrain: &Terrain,
@@ -93,42 +93,45 @@ pub(crate) fn maps(
         let depth = f64::from(records[cell].max_depth);
         Water { depth, level: mesh.level(cell, depth), velocity: [0.0; 2] }
     };
-    let mut values = vec![[f32::NAN; NAMES.len()]; columns * rows];
-    values.par_chunks_mut(columns.max(1)).enumerate().for_each(|(row, values)| {
-        for (column, values) in values.iter_mut().enumerate().filter(|(column, _)| terrain.is_valid_cell(*column, row))
-        {
-            let [x, y] = grid.centre(column, row);
-            if !mesh.layout.bounds.contains(x, y) {
-                continue;
-            }
-            let owns = |cell: &usize| domain.is_none_or(|domain| domain.owns(*cell));
-            let Some(cell) = mesh.cell_at([x, y]).filter(owns) else { continue };
-            let record = &records[cell];
-            if record.max_depth <= 0.0 {
-                continue;
-            }
-            let is_wet = |sample: Sample| (sample.depth > wet_depth).then_some(sample);
-            let now = is_wet(Sampler { mesh, terrain, water }.in_cell(cell, x, y));
-            let most = is_wet(Sampler { mesh, terrain, water: highest }.in_cell(cell, x, y));
-            let depths = [now, most].map(|sample| sample.map_or(f32::NAN, |sample| sample.depth as f32));
-            let velocity = now.map_or([f32::NAN; 2], |now| now.velocity.map(|component| component as f32));
-            values[0] = depths[0];
-            [values[7], values[8]] = velocity;
-            let most = depths[0].max(depths[1]);
-            if most.is_nan() {
-                continue;
-            }
-            let level = (terrain.height(x, y) + f64::from(most)) as f32;
-            let hazard = record.hazard * (most / record.max_depth).min(1.0);
-            let history = [most, record.max_speed(), record.arrival, record.duration, hazard, level];
-            values[1..7].copy_from_slice(&history);
-            [values[9], values[10]] = record.fastest;
+    let pixel = |column: usize, row: usize| {
+        let [x, y] = grid.centre(column, row);
+        if !terrain.is_valid_cell(column, row) || !mesh.layout.bounds.contains(x, y) {
+            return None;
         }
-    });
-    if let Some(domain) = domain {
-        domain.gather_pixels(&mut values, |values| values.iter().any(|value| !value.is_nan()));
-    }
-    let of = |k: usize| values.iter().map(|values| values[k]).collect();
+        let owns = |cell: &usize| domain.is_none_or(|domain| domain.owns(*cell));
+        let cell = mesh.cell_at([x, y]).filter(owns)?;
+        let record = &records[cell];
+        if record.max_depth <= 0.0 {
+            return None;
+        }
+        let is_wet = |sample: Sample| (sample.depth > wet_depth).then_some(sample);
+        let now = is_wet(Sampler { mesh, terrain, water }.in_cell(cell, x, y));
+        let most = is_wet(Sampler { mesh, terrain, water: highest }.in_cell(cell, x, y));
+        let depths = [now, most].map(|sample| sample.map_or(f32::NAN, |sample| sample.depth as f32));
+        let velocity = now.map_or([f32::NAN; 2], |now| now.velocity.map(|component| component as f32));
+        let mut values = [f32::NAN; NAMES.len()];
+        values[0] = depths[0];
+        [values[7], values[8]] = velocity;
+        let most = depths[0].max(depths[1]);
+        if most.is_nan() {
+            return None;
+        }
+        let level = (terrain.height(x, y) + f64::from(most)) as f32;
+        let hazard = record.hazard * (most / record.max_depth).min(1.0);
+        let history = [most, record.max_speed(), record.arrival, record.duration, hazard, level];
+        values[1..7].copy_from_slice(&history);
+        [values[9], values[10]] = record.fastest;
+        Some((row * columns + column, values))
+    };
+    let of_row = |row: usize| (0..columns).filter_map(|column| pixel(column, row)).collect::<Vec<_>>();
+    // Only what was wet takes memory until the maps are made.
+    let pixels: Vec<(usize, [f32; NAMES.len()])> = (0..rows).into_par_iter().flat_map_iter(of_row).collect();
+    let Some(pixels) = Domain::gathered(domain, pixels) else { return Vec::new() };
+    let of = |k: usize| {
+        let mut values = vec![f32::NAN; columns * rows];
+        pixels.iter().for_each(|(pixel, of_pixel)| values[*pixel] = of_pixel[k]);
+        values
+    };
     let map =
         |(k, [name, title, unit]): (usize, &[&'static str; 3])| Map { name, title, unit, columns, rows, values: of(k) };
     NAMES.iter().enumerate().map(map).collect()

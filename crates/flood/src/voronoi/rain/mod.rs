@@ -171,25 +171,29 @@ impl Weather {
         self.roofs.clear();
     }
 
-    /// What has soaked in at each cell of the terrain's grid, 0 where no water has come near; none where nothing soaks in.
+    /// What has soaked in at each cell of the terrain's grid, 0 where no water has come near; none where nothing soaks in,
+    /// and at all processes but the first.
     pub fn map(&self, mesh: &Mesh, terrain: &Terrain, soaked: &Soaked, domain: Option<&Domain>) -> Option<Map> {
         self.soaks().then_some(())?;
         let grid = terrain.map_grid();
-        let depth = |place: usize| {
-            let (column, row) = (place % grid.columns, place / grid.columns);
-            if !terrain.is_valid_cell(column, row) {
-                return f32::NAN;
-            }
+        let (columns, rows) = (grid.columns, grid.rows);
+        let pixel = |column: usize, row: usize| {
             let owns = |cell: &usize| domain.is_none_or(|domain| domain.owns(*cell));
-            let cell = mesh.cell_at(grid.centre(column, row)).filter(owns);
-            cell.and_then(|cell| soaked.depth.get(cell)).copied().unwrap_or(0.0)
+            let cell = mesh.cell_at(grid.centre(column, row)).filter(owns)?;
+            let depth = *soaked.depth.get(cell)?;
+            (depth != 0.0).then_some((row * columns + column, depth))
         };
-        let mut values: Vec<f32> = (0..grid.columns * grid.rows).into_par_iter().map(depth).collect();
-        if let Some(domain) = domain {
-            domain.gather_pixels(&mut values, |value| *value != 0.0 && !value.is_nan());
+        let of_row = |row: usize| (0..columns).filter_map(|column| pixel(column, row)).collect::<Vec<_>>();
+        let pixels = Domain::gathered(domain, (0..rows).into_par_iter().flat_map_iter(of_row).collect())?;
+        let mut values = vec![0.0; columns * rows];
+        pixels.into_iter().for_each(|(pixel, depth)| values[pixel] = depth);
+        for (pixel, value) in values.iter_mut().enumerate() {
+            if !terrain.is_valid_cell(pixel % columns, pixel / columns) {
+                *value = f32::NAN;
+            }
         }
         let (name, title) = ("infiltration", "Infiltration");
-        Some(Map { name, title, unit: "m", columns: grid.columns, rows: grid.rows, values })
+        Some(Map { name, title, unit: "m", columns, rows, values })
     }
 
     pub fn soaks(&self) -> bool {
