@@ -4,8 +4,8 @@
 use super::super::reconstruction::AtFace;
 use super::{AtBoundary, Now};
 
-/// Rounds of Newton's method, which doubles its digits in each.
-const ROUNDS: usize = 30;
+/// Iterations of Newton's method, which doubles its digits in each; on a GPU, in single precision, `BOUNDARY_ITERATIONS_ON_GPU`.
+const BOUNDARY_ITERATIONS: usize = 30;
 
 /// The water at a boundary face before which the water is `at`.
 pub(crate) fn state(now: Now, at: &AtFace, gravity: f64) -> AtBoundary {
@@ -81,7 +81,7 @@ fn comes_in(discharge: f64, outgoing: f64, gravity: f64) -> AtBoundary {
     let target = gravity * discharge;
     let critical = target.cbrt();
     let mut celerity = critical.max(outgoing);
-    for _ in 0..ROUNDS {
+    for _ in 0..BOUNDARY_ITERATIONS {
         let value = celerity * celerity * (2.0 * celerity - outgoing) - target;
         let slope = celerity * (6.0 * celerity - 2.0 * outgoing);
         celerity -= value / slope;
@@ -103,7 +103,7 @@ fn goes_out(discharge: f64, outgoing: f64, gravity: f64) -> AtBoundary {
         return AtBoundary { depth: depth_of(critical, gravity), across: critical };
     }
     let mut celerity = 0.5 * outgoing;
-    for _ in 0..ROUNDS {
+    for _ in 0..BOUNDARY_ITERATIONS {
         let value = celerity * celerity * (outgoing - 2.0 * celerity) - target;
         let slope = celerity * (2.0 * outgoing - 6.0 * celerity);
         celerity -= value / slope;

@@ -11,8 +11,8 @@ struct Crossing {
     thrust: f32,
 }
 
-// Rounds of Newton's method.
-const ROUNDS = 20u;
+// Iterations of Newton's method. Fewer than `BOUNDARY_ITERATIONS` of `state.rs`, as single precision has fewer digits to find.
+const BOUNDARY_ITERATIONS_ON_GPU = 20u;
 
 // Thrust on a wall less that of the cell: the flux of Harten, Lax & van Leer between the water and its mirror image, whose wave speeds are u - c and, from the
 // two-rarefaction state, c + u/2 (Toro 2001, equation 10.18).
@@ -81,7 +81,7 @@ fn comes_in(discharge: f32, outgoing: f32) -> vec2f {
     let wanted = parameters.gravity * discharge;
     let slowest = pow(wanted, 1.0 / 3.0);
     var celerity = max(slowest, outgoing);
-    for (var k = 0u; k < ROUNDS; k++) {
+    for (var k = 0u; k < BOUNDARY_ITERATIONS_ON_GPU; k++) {
         let value = celerity * celerity * (2.0 * celerity - outgoing) - wanted;
         celerity -= value / (celerity * (6.0 * celerity - 2.0 * outgoing));
     }
@@ -102,7 +102,7 @@ fn goes_out(discharge: f32, outgoing: f32) -> vec2f {
         return critical(outgoing);
     }
     var celerity = 0.5 * outgoing;
-    for (var k = 0u; k < ROUNDS; k++) {
+    for (var k = 0u; k < BOUNDARY_ITERATIONS_ON_GPU; k++) {
         let value = celerity * celerity * (outgoing - 2.0 * celerity) - wanted;
         let slope = celerity * (2.0 * outgoing - 6.0 * celerity);
         celerity = max(celerity - value / min(slope, -1e-30), slowest);

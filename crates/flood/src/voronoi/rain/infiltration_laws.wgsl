@@ -1,7 +1,8 @@
 // How much water soaks into the ground: the formulas of `infiltration.rs` without differences of large numbers. A law is its kind and its numbers.
 #import declared
 
-const ITERATIONS = 20u;
+// Most iterations of Newton's method. Fewer than `NEWTON_ITERATIONS` of `infiltration.rs`, as single precision has fewer digits to find.
+const NEWTON_ITERATIONS_ON_GPU = 20u;
 
 // 1 - e^-x.
 fn fallen_off(x: f32) -> f32 {
@@ -17,7 +18,7 @@ fn beyond_logarithm(y: f32) -> f32 {
 // after which `soaked` would have soaked in.
 fn horton(first: f32, last: f32, decay: f32, soaked: f32, step: f32) -> f32 {
     var time = 0.0;
-    for (var k = 0u; k < ITERATIONS; k++) {
+    for (var k = 0u; k < NEWTON_ITERATIONS_ON_GPU; k++) {
         let missing = soaked - last * time - (first - last) / decay * fallen_off(decay * time);
         let rate = last + (first - last) * exp(-decay * time);
         if rate <= 0.0 || missing <= 1e-7 * soaked {
@@ -35,7 +36,7 @@ fn green_ampt(conducted: f32, head: f32, soaked: f32) -> f32 {
     }
     let scale = soaked + head;
     var y = (conducted + sqrt(2.0 * conducted * scale)) / scale;
-    for (var k = 0u; k < ITERATIONS; k++) {
+    for (var k = 0u; k < NEWTON_ITERATIONS_ON_GPU; k++) {
         let excess = soaked * y + head * beyond_logarithm(y) - conducted;
         let next = y - excess / (soaked + head * y / (1.0 + y));
         if abs(next - y) <= 1e-7 * y {
