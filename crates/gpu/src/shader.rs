@@ -9,7 +9,8 @@ use std::collections::HashSet;
 /// Pieces that shaders can import: name, which is that of the file without `.wgsl`, and text.
 pub type ShaderLibrary<'a> = &'a [(&'a str, &'a str)];
 
-/// The piece `sums_before`: the sum of a number over the threads of a group before each, and over all. Its groups have 256 threads.
+/// The piece `sums_before`: the sum of a number over the threads of a group before each, and over all. The declaration of the shader that imports it
+/// has `GROUP`, the number of threads.
 pub const SUMS_BEFORE: (&str, &str) = ("sums_before", include_str!("sums_before.wgsl"));
 
 /// The piece `compensated_sums`: sums without error in pairs of numbers (see [`to_pair`](crate::to_pair)), and counts of more than 32 bits. The declaration of the shader that imports

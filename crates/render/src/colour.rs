@@ -1,5 +1,6 @@
 //! Colours of numbers.
 
+use crate::shared::{SRGB_EXPONENT, SRGB_LINE_END, SRGB_OFFSET, SRGB_SCALE, SRGB_SLOPE};
 use corpuscle_gpu::{Gpu, texture_2d, wgpu};
 
 /// Colours in a table on the device.
@@ -56,7 +57,11 @@ impl ColourTable {
 pub fn linear(colour: [u8; 3]) -> [f32; 3] {
     colour.map(|byte| {
         let value = f32::from(byte) / 255.0;
-        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        if value <= SRGB_LINE_END {
+            value / SRGB_SLOPE
+        } else {
+            ((value + SRGB_OFFSET) / SRGB_SCALE).powf(SRGB_EXPONENT)
+        }
     })
 }
 

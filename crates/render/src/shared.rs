@@ -18,6 +18,20 @@ corpuscle_gpu::declare! {
         pub(crate) const SPLAT_COUNT: u32 = 25;
         /// Numbers a pixel in which splats add up water, foam and flow.
         pub(crate) const SUMS: u32 = 7;
+        /// m/s2.
+        pub(crate) const GRAVITY: f32 = crate::fluid::GRAVITY as f32;
+        /// sRGB (IEC 61966-2-1): a straight line for dark colours, `linear * SRGB_SLOPE`, and `SRGB_SCALE * linear^(1 / SRGB_EXPONENT) - SRGB_OFFSET` above.
+        pub(crate) const SRGB_SLOPE: f32 = 12.92;
+        /// See above.
+        pub(crate) const SRGB_SCALE: f32 = 1.055;
+        /// See above.
+        pub(crate) const SRGB_OFFSET: f32 = 0.055;
+        /// See above.
+        pub(crate) const SRGB_EXPONENT: f32 = 2.4;
+        /// Where the line ends, in sRGB.
+        pub(crate) const SRGB_LINE_END: f32 = 0.04045;
+        /// The same in linear light.
+        pub(crate) const SRGB_LINE_END_LINEAR: f32 = 0.003_130_8;
         /// Quads along a side of a tile of the ground.
         pub(crate) const QUADS: u32 = crate::terrain::QUADS_OF_TILE;
     }

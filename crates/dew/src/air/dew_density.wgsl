@@ -68,18 +68,16 @@ fn of_solids(place: vec3f, moments: ptr<function, Moments>) -> f32 {
     return filling;
 }
 
-const NO_OUTLET = 6u;
-
 // Twin of `Room::outlet_near`.
 fn outlet_near(place: vec3f) -> u32 {
-    for (var number = 0u; number < 6u; number++) {
+    for (var number = 0u; number < NO_FACE; number++) {
         let axis = number / 2u;
         let to = select(parameters.high[axis] - place[axis], place[axis] - parameters.low[axis], number % 2u == 0u);
         if to < parameters.h && face(number) == OUTLET {
             return number;
         }
     }
-    return NO_OUTLET;
+    return NO_FACE;
 }
 
 fn density_of(particle: Particle, filling: f32) -> f32 {
@@ -100,7 +98,7 @@ fn density_of(particle: Particle, filling: f32) -> f32 {
         return parameters.rest_density * (1.0 - 0.5 * inward * inward);
     }
     let outlet = outlet_near(particle.place);
-    if outlet != NO_OUTLET {
+    if outlet != NO_FACE {
         // Where air would flow back in there is none beyond: that must not suck.
         return max(density, parameters.rest_density * (1.0 + status.density_excess_beyond[outlet]));
     }

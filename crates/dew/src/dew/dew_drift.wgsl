@@ -73,7 +73,7 @@ fn main(
         keep(&particle);
         particles[i] = packed(particle);
     }
-    for (var number = 0u; number < 6u; number++) {
+    for (var number = 0u; number < NO_FACE; number++) {
         if face(number) != OUTLET {
             continue;
         }

@@ -166,9 +166,9 @@ fn driving(particle: Particle) -> vec3f {
         }
     }
     // Boussinesq, by differences from the ambient air (Stull 1988, equation 1.5.1).
-    let moist = 1.0 + 0.608 * parameters.ambient_vapour;
+    let moist = 1.0 + VAPOUR_LIGHTNESS * parameters.ambient_vapour;
     let temperature = total(particle.temperature);
-    let lighter = temperature * moist + (parameters.ambient + temperature) * 0.608 * total(particle.vapour);
+    let lighter = temperature * moist + (parameters.ambient + temperature) * VAPOUR_LIGHTNESS * total(particle.vapour);
     return driven - lighter / (parameters.ambient * moist) * parameters.gravity;
 }
 

@@ -12,7 +12,7 @@ mod transfer;
 
 pub use live_change::LiveChange;
 #[cfg(feature = "gpu")]
-pub(crate) use motion::{ACCELERATION_LIMIT, DIFFUSION_LIMIT, FARTHEST_SPREAD};
+pub(crate) use motion::{ACCELERATION_LIMIT, DIFFUSION_LIMIT, FARTHEST_SPREAD, VAPOUR_LIGHTNESS};
 pub use scatter::Scatter;
 pub use source_change::SourceChange;
 

@@ -212,9 +212,12 @@ impl Dew {
     }
 }
 
-/// T (1 + 0.608 Y), K: temperature at which dry air is as light (Stull 1988, equation 1.5.1).
+/// How much lighter vapour makes air: the coefficient of its mass fraction in the virtual temperature (Stull 1988, equation 1.5.1).
+pub(crate) const VAPOUR_LIGHTNESS: f64 = 0.608;
+
+/// T (1 + 0.608 Y), K: temperature at which dry air is as light.
 fn virtual_temperature(temperature: f64, vapour: f64) -> f64 {
-    temperature * (1.0 + 0.608 * vapour)
+    temperature * (1.0 + VAPOUR_LIGHTNESS * vapour)
 }
 
 /// Sets the densities of particles.

@@ -5,8 +5,6 @@
 #import dew_utility
 #import group_reduction
 
-const NOWHERE = 6u;
-
 // Inflow and outflow of a particle: see `booked`.
 struct Crossed {
     came: vec4f,
@@ -36,24 +34,24 @@ struct Beyond {
 
 // Twin of `Room::beyond` and `Room::is_beyond_edge`.
 fn beyond(place: vec3f) -> Beyond {
-    var passed = NOWHERE;
-    var open = NOWHERE;
+    var passed = NO_FACE;
+    var open = NO_FACE;
     var count = 0u;
-    for (var number = 0u; number < 6u; number++) {
+    for (var number = 0u; number < NO_FACE; number++) {
         let axis = number / 2u;
         let is_beyond = select(place[axis] >= parameters.high[axis], place[axis] < parameters.low[axis], number % 2u == 0u);
         if !is_beyond {
             continue;
         }
         count += 1u;
-        if face(number) >= INLET && passed == NOWHERE {
+        if face(number) >= INLET && passed == NO_FACE {
             passed = number;
         }
-        if face(number) == OPEN && open == NOWHERE {
+        if face(number) == OPEN && open == NO_FACE {
             open = number;
         }
     }
-    return Beyond(select(open, passed, open == NOWHERE), open != NOWHERE && count > 1u);
+    return Beyond(select(open, passed, open == NO_FACE), open != NO_FACE && count > 1u);
 }
 
 // Twin of `Particle::leave`.
@@ -69,7 +67,7 @@ fn booked(particle: Particle) -> vec4f {
 
 // Twin of `Room::hold_at_inlets`.
 fn hold_at_inlets(particle: ptr<function, Particle>) {
-    for (var number = 0u; number < 6u; number++) {
+    for (var number = 0u; number < NO_FACE; number++) {
         let axis = number / 2u;
         let at = (*particle).place[axis];
         if face(number) == INLET && select(at >= parameters.high[axis], at < parameters.low[axis], number % 2u == 0u) {
@@ -88,7 +86,7 @@ fn cross_over(particle: ptr<function, Particle>) -> bool {
     let beyond = beyond((*particle).place);
     let number = beyond.number;
     let held = booked(*particle);
-    if (role == INSIDE || role == IDLE) && number != NOWHERE {
+    if (role == INSIDE || role == IDLE) && number != NO_FACE {
         // Air of low utility is booked as outflow already.
         crossed.went = select(vec4f(0.0), held, role == INSIDE);
         if beyond.is_edge {
@@ -104,7 +102,7 @@ fn cross_over(particle: ptr<function, Particle>) -> bool {
     } else if role == LEAVING {
         let left = (*particle).role >> FACE_BITS;
         leave(particle, left, (*particle).velocity[left / 2u] + status.before[left]);
-    } else if (role == COMING || role == OUTSIDE) && number == NOWHERE {
+    } else if (role == COMING || role == OUTSIDE) && number == NO_FACE {
         (*particle).role = INSIDE;
         crossed.came = held;
     }
@@ -118,7 +116,7 @@ fn mark_columns(particle: Particle) {
         let number = particle.role >> FACE_BITS;
         atomicMax(&columns_before[column_of(number, particle.place)].outermost, bits_of_depth(depth_beyond(particle.place, number)));
     }
-    for (var number = 0u; number < 6u; number++) {
+    for (var number = 0u; number < NO_FACE; number++) {
         if particle.role != INSIDE || face(number) != OPEN || depth_beyond(particle.place, number) <= -parameters.h {
             continue;
         }

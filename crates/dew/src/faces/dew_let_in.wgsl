@@ -57,7 +57,7 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     var spreading = array<f32, 6>();
     var excess = array<f32, 6>();
     var running_mean = status.running_mean_before;
-    for (var number = 0u; number < 6u; number++) {
+    for (var number = 0u; number < NO_FACE; number++) {
         let rule = face(number);
         if rule == OUTLET {
             let mean = mean_before(number, (old + GROUP - 1u) / GROUP, thread);

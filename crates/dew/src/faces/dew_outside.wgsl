@@ -99,7 +99,7 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     let id = status.next_id - old;
     let is_going = status.halted == GOING;
     var count = old;
-    for (var number = 0u; number < 6u; number++) {
+    for (var number = 0u; number < NO_FACE; number++) {
         if face(number) == OPEN {
             count = tend_side(number, count, id, is_going, thread);
         }

@@ -37,6 +37,8 @@ corpuscle_gpu::declare! {
         pub const OUTLET: u32 = 3;
         /// Particles are advected by the flow.
         pub const OPEN: u32 = 4;
+        /// Number of faces, and what stands for none of them.
+        pub const NO_FACE: u32 = 6;
         /// Role of a particle: in the room. Roles of a face have its number, twice the axis and 1 for the high side, in higher bits.
         pub const INSIDE: u32 = 0;
         /// Before an inlet.
@@ -81,6 +83,8 @@ corpuscle_gpu::declare! {
         pub const ACCELERATION_LIMIT: f32 = crate::dew::ACCELERATION_LIMIT as f32;
         /// Part of the longest step for which no diffusion overshoots its neighbours.
         pub const DIFFUSION_LIMIT: f32 = crate::dew::DIFFUSION_LIMIT as f32;
+        /// Coefficient of vapour in the virtual temperature.
+        pub const VAPOUR_LIGHTNESS: f32 = crate::dew::VAPOUR_LIGHTNESS as f32;
         /// Damping of particles that approach each other.
         pub const DAMPING: f32 = crate::air::DAMPING as f32;
         /// Strength of the virtual force of solids, over density and the square of the speed of sound.

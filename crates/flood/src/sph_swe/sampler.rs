@@ -11,6 +11,9 @@ use corpuscle_terrain::Terrain;
 /// Share of a position's surroundings that water must cover for the position to be wet.
 pub(super) const COVERED: f64 = 0.5;
 
+/// Radius of a search for the water at a position over the reach of the particles there: that of those around may be larger.
+pub(super) const SEARCH_MARGIN: f64 = 1.1;
+
 /// Largest depth at a position over that of the deepest particle near it.
 pub(super) const DEEPER: f64 = 1.2;
 
@@ -40,7 +43,7 @@ impl Sampler<'_> {
     /// The share of the surroundings of (x, y) that ghost particles beyond walls and periodic sides cover.
     fn covered_by_images(&self, x: f64, y: f64) -> f64 {
         let Arrangement { cells, particle, images, x: at_x, y: at_y, .. } = self.arrangement;
-        let places = cells.ranges([x, y], 1.1 * cells.reach_at([x, y])).flatten();
+        let places = cells.ranges([x, y], SEARCH_MARGIN * cells.reach_at([x, y])).flatten();
         let weight = |place: usize| {
             let image = images.binary_search_by_key(&(place as u32), |(image, _)| *image).ok()?;
             let shown = &self.particles[particle[images[image].1 as usize] as usize];
@@ -83,7 +86,7 @@ impl Sampler<'_> {
             return Sample::default();
         }
         let near = |each: &mut dyn FnMut(&Particle, f64)| {
-            for particle in self.near(from_x, from_y, 1.1 * self.arrangement.cells.reach_at([from_x, from_y])) {
+            for particle in self.near(from_x, from_y, SEARCH_MARGIN * self.arrangement.cells.reach_at([from_x, from_y])) {
                 let dx = x - (particle.x + self.since * particle.u);
                 let dy = y - (particle.y + self.since * particle.v);
                 let h = SAMPLED * particle.h;

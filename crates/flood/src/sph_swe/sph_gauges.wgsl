@@ -2,7 +2,7 @@
 #import sph_water
 #import sph_rows
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(GAUGE_GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let number = id.x;
     if number >= status.gauge_places {

@@ -8,8 +8,6 @@
 #import sph_spline
 #import sph_ground
 
-const THREADS = 64u;
-
 // Most particles spawned in a step; the rest follows in the next.
 const MAX_SPAWNED = 256u;
 
@@ -165,7 +163,7 @@ struct Turn {
 
 var<workgroup> turn: Turn;
 
-@compute @workgroup_size(THREADS)
+@compute @workgroup_size(SPAWN_GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
     if thread == 0u {
         turn = Turn(status.particles, status.particles, status.spawned, 0u);

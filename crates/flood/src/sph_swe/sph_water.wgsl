@@ -95,7 +95,7 @@ fn water_later(place: vec2f, since: f32) -> vec3f {
     if reach <= 0.0 {
         return vec3f(0.0);
     }
-    let search_radius = 1.1 * reach;
+    let search_radius = SEARCH_MARGIN * reach;
     let cells = cells_round(parameters.grid, before, search_radius);
     var total = 0.0;
     var lengths = 0.0;
@@ -113,7 +113,7 @@ fn water_later(place: vec2f, since: f32) -> vec3f {
     }
     var covered = total;
     if total > 0.0 && total < COVERED {
-        covered += covered_by_images(place, 1.1 * reach_at(place)) + covered_by_obstacles(place, lengths / total);
+        covered += covered_by_images(place, SEARCH_MARGIN * reach_at(place)) + covered_by_obstacles(place, lengths / total);
     }
     if covered < COVERED {
         return vec3f(0.0);

@@ -7,9 +7,10 @@
 @group(2) @binding(1) var behind_sampler: sampler;
 
 const MOST_STEPS: i32 = 28;
-// Refractive index of water, and the part of the surroundings in what is seen through a drop.
-const INDEX: f32 = 1.33;
-const FAR: f32 = 0.85;
+// Refractive index of water as drops have it; that of floods is 1.333 (`fluid_shade.wgsl`): each has its reviewed pictures.
+const DROP_INDEX: f32 = 1.33;
+// The part of the surroundings in what is seen through a drop.
+const SURROUNDINGS: f32 = 0.85;
 
 struct Corner {
     @builtin(position) clip: vec4f,
@@ -87,15 +88,15 @@ fn fragment(corner: Corner) -> Drawn {
 // Light from a place on a drop.
 fn water(cap: CapInstance, place: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
     // A drop is a lens, flat on one side: what is near behind it is seen smaller, and what is far upside down.
-    let inside = refract(direction, normal, 1.0 / INDEX);
+    let inside = refract(direction, normal, 1.0 / DROP_INDEX);
     let flat = cap.out * -sign(dot(inside, cap.out));
-    let through = refract(inside, flat, INDEX);
+    let through = refract(inside, flat, DROP_INDEX);
     // Where no light leaves by the flat side it is thrown back there.
     let leaving = select(reflect(inside, flat), through, dot(through, through) > 0.0);
     let clip = view.clip_from_world * vec4f(place + (inside - direction) * max(6.0 * cap.radius, 0.02), 1.0);
     let uv = clamp(clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5, vec2f(0.0), vec2f(1.0));
     let near = textureSampleLevel(behind, behind_sampler, uv, 0.0).rgb;
-    let seen = mix(near, surroundings(leaving), FAR);
+    let seen = mix(near, surroundings(leaving), SURROUNDINGS);
     let fresnel = mirrored(dot(normal, -direction), 0.02);
     // Light from the sun gathers on the far side of a drop and leaves the near one darker.
     let lit = 0.82 + 0.3 * dot(normal, -view.sun.xyz) * (1.0 - fresnel);

@@ -6,6 +6,9 @@ use crate::shared::{DropletInstance, SPLAT_COUNT, SPLAT_GROUP};
 use corpuscle_gpu::{Gpu, wgpu};
 use glam::{DVec2, DVec3};
 
+/// Drawn particles have their ids modulo it, by which tests tell them apart.
+pub(super) const DRAWN_NUMBERS: u32 = 4096;
+
 /// A particle of a fluid, as it is drawn: a ball, or flattened along a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Droplet {
@@ -53,7 +56,7 @@ impl Droplet {
             radius: stage.length(self.radius),
             normal: DVec3::from(self.normal).normalize_or(DVec3::Z).as_vec3().into(),
             flatness: self.flatness as f32,
-            matter: [depth as f32, self.foam as f32, stage.length(self.reach), (self.id % 4096) as f32],
+            matter: [depth as f32, self.foam as f32, stage.length(self.reach), (self.id % u64::from(DRAWN_NUMBERS)) as f32],
             flow: self.flow.map(|along| along as f32),
             unused: [0.0; 2],
         };

@@ -13,7 +13,7 @@
 @group(1) @binding(8) var flow: texture_2d<f32>;
 
 // Refractive index of air over that of water, and what water mirrors of light that falls straight on it.
-const INDEX: f32 = 1.0 / 1.333;
+const AIR_OVER_WATER_INDEX: f32 = 1.0 / 1.333;
 const STRAIGHT: f32 = 0.02;
 // Light that a bed gives back that is out of sight.
 const BED: vec3f = vec3f(0.16, 0.15, 0.09);
@@ -95,7 +95,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     // A film so thin that it does not close is not seen.
     let closed = smoothstep(0.0, fluid.surface.y, water * cosine);
 
-    let refracted = refract(-to_eye, normal, INDEX);
+    let refracted = refract(-to_eye, normal, AIR_OVER_WATER_INDEX);
     let steep = max(-dot(refracted, normal), 0.1);
     let path = water * cosine / steep;
     let shine = sunshine_by(FEW_SHADOW_TAPS, place, normal, vec2f(pixel));
@@ -107,7 +107,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         ground *= 1.0 + 0.6 * gathered * caustics(bed, pixel_here);
     }
     // The light that the ground gives back came through the water too.
-    let down = max(dot(refract(-view.sun.xyz, normal, INDEX), -normal), 0.3);
+    let down = max(dot(refract(-view.sun.xyz, normal, AIR_OVER_WATER_INDEX), -normal), 0.3);
     let left = exp(-fluid.absorption.rgb * (path + path * steep / down));
     let daylight = view.sunlight.rgb * max(dot(normal, view.sun.xyz), 0.0) * shine * 0.4 + light_from_all_round(normal.z);
     let inner = ground * left + fluid.colour.rgb * daylight * (1.0 - left);

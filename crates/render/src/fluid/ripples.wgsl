@@ -30,7 +30,7 @@ fn seen_of(length: f32, pixel: f32) -> f32 {
 
 // Ripples of a length run through the water as waves of deep water do: the speed is sqrt(g length / 2 pi), here in lengths a second.
 fn run_of(length: f32) -> f32 {
-    return sqrt(9.81 / (2.0 * PI * length * view.frame.z));
+    return sqrt(GRAVITY / (2.0 * PI * length * view.frame.z));
 }
 
 // Slope of the ripples, each octave half as long as the one before.

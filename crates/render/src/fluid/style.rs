@@ -4,7 +4,7 @@ use crate::Stage;
 use crate::shared::FluidUniforms;
 
 /// m/s2.
-const GRAVITY: f64 = 9.81;
+pub(crate) const GRAVITY: f64 = 9.81;
 
 /// Smoothing of the nearest surface of the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

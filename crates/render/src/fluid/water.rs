@@ -83,15 +83,21 @@ impl Water {
         }
         self.time = Some(time);
         self.foam =
-            droplets.iter().filter(|droplet| droplet.foam > 0.01).map(|droplet| (droplet.id, droplet.foam)).collect();
+            droplets.iter().filter(|droplet| droplet.foam > LEAST_FOAM).map(|droplet| (droplet.id, droplet.foam)).collect();
     }
 }
 
 fn in_air(set: &ParticleSet, index: usize) -> Droplet {
     let volume = set.mass[index] / DENSITY;
     let radius = (volume * 0.75 / std::f64::consts::PI).cbrt();
-    Droplet { id: set.id[index], foam: 0.15, ..Droplet::ball(set.position[index], radius) }
+    Droplet { id: set.id[index], foam: SPRAY_FOAM, ..Droplet::ball(set.position[index], radius) }
 }
+
+/// Foam on particles in the air.
+pub(super) const SPRAY_FOAM: f64 = 0.15;
+
+/// Less foam is not kept from picture to picture.
+pub(super) const LEAST_FOAM: f64 = 0.01;
 
 /// Of water, kg/m3.
 const DENSITY: f64 = 1000.0;

@@ -1,5 +1,6 @@
 // Lays a picture into its place in a window, pixel by pixel. What is the same for a whole pass is said when the pipeline is made:
 // software in place of a GPU would compute both sides of a choice.
+#import declared
 #import press
 
 // Highlights are pressed; the window takes linear light.
@@ -27,7 +28,7 @@ fn pixel(at: vec2f) -> vec3f {
 
 // Linear light of sRGB (IEC 61966-2-1).
 fn decode(bytes: vec3f) -> vec3f {
-    return select(pow((bytes + 0.055) / 1.055, vec3f(2.4)), bytes / 12.92, bytes <= vec3f(0.04045));
+    return select(pow((bytes + SRGB_OFFSET) / SRGB_SCALE, vec3f(SRGB_EXPONENT)), bytes / SRGB_SLOPE, bytes <= vec3f(SRGB_LINE_END));
 }
 
 // A finished picture.
@@ -42,7 +43,7 @@ fn fragment_finished(corner: Corner) -> @location(0) vec4f {
 fn encode_quickly(colour: vec3f) -> vec3f {
     let root = sqrt(colour);
     let high = 0.8337642 * root + 0.2980988 * sqrt(root) - 0.0553211 * colour - 0.0769015;
-    return select(high, 12.92 * colour, colour <= vec3f(0.0031308));
+    return select(high, SRGB_SLOPE * colour, colour <= vec3f(SRGB_LINE_END_LINEAR));
 }
 
 // Linear light with one sample a pixel.

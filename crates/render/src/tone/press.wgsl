@@ -1,4 +1,5 @@
 // From linear light to the bytes of a picture, colour by colour.
+#import declared
 
 // Presses highlights below 1 and leaves base colours as they are (Khronos PBR Neutral tone mapper, 2024).
 fn press(colour: vec3f) -> vec3f {
@@ -18,6 +19,6 @@ fn press(colour: vec3f) -> vec3f {
 
 // sRGB from linear light (IEC 61966-2-1).
 fn encode(colour: vec3f) -> vec3f {
-    let high = 1.055 * pow(max(colour, vec3f(0.0)), vec3f(1.0 / 2.4)) - 0.055;
-    return select(high, 12.92 * colour, colour <= vec3f(0.0031308));
+    let high = SRGB_SCALE * pow(max(colour, vec3f(0.0)), vec3f(1.0 / SRGB_EXPONENT)) - SRGB_OFFSET;
+    return select(high, SRGB_SLOPE * colour, colour <= vec3f(SRGB_LINE_END_LINEAR));
 }

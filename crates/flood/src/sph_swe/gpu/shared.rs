@@ -49,8 +49,14 @@ corpuscle_gpu::declare! {
         pub const SAMPLED: f32 = super::super::SAMPLED as f32;
         /// Share of a position's surroundings that water must cover for the position to be wet.
         pub const COVERED: f32 = super::super::sampler::COVERED as f32;
+        /// Radius of a search for the water at a position over the reach of the particles there.
+        pub const SEARCH_MARGIN: f32 = super::super::sampler::SEARCH_MARGIN as f32;
         /// Largest depth at a position over that of the deepest particle near it.
         pub const DEEPER: f32 = super::super::sampler::DEEPER as f32;
+        /// Threads of a group that samples positions of gauges.
+        pub const GAUGE_GROUP: u32 = 64;
+        /// Threads of the group that spawns particles: more than [`SPAWN_CANDIDATES`] would only wait.
+        pub const SPAWN_GROUP: u32 = 64;
         /// The word of `rows` with the first word of the first row.
         pub const ROWS: u32 = 0;
         /// The word with the number of words of a row.

@@ -76,6 +76,8 @@ corpuscle_gpu::declare! {
         pub const ORIFICE: f32 = super::super::structures::hydraulics::ORIFICE as f32;
         /// Depth over the height of a culvert from which on it is submerged.
         pub const SUBMERGED: f32 = super::super::structures::hydraulics::SUBMERGED as f32;
+        /// Exponent of Villemonte's formula: see `structures/hydraulics.rs`.
+        pub const SUBMERGENCE_EXPONENT: f32 = super::super::structures::hydraulics::SUBMERGENCE_EXPONENT as f32;
         /// A law of infiltration: at one rate.
         pub const CONSTANT: f32 = 1.0;
         /// Horton 1940.

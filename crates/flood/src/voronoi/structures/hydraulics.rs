@@ -50,6 +50,9 @@ impl Law {
     }
 }
 
+/// Exponent of the part of its free discharge that a submerged weir lets over (Villemonte 1947).
+pub(crate) const SUBMERGENCE_EXPONENT: f64 = 0.385;
+
 /// Poleni's formula Q = C b h1^(3/2), less what the water behind the crest holds back: (1 - (h2/h1)^(3/2))^0.385 (Villemonte
 /// 1947).
 pub(crate) fn over_weir(weir: &WeirScene, upper: f64, lower: Option<f64>) -> f64 {
@@ -59,7 +62,7 @@ pub(crate) fn over_weir(weir: &WeirScene, upper: f64, lower: Option<f64>) -> f64
         return 0.0;
     }
     let free = weir.coefficient * weir.width_m * head.powf(1.5);
-    free * (1.0 - (behind / head).powf(1.5)).powf(0.385)
+    free * (1.0 - (behind / head).powf(1.5)).powf(SUBMERGENCE_EXPONENT)
 }
 
 impl Culvert {

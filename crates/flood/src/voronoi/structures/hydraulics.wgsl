@@ -12,7 +12,7 @@ fn over_weir(crest: f32, width: f32, coefficient: f32, upper: f32, lower: f32) -
     let behind = clamp(lower - crest, 0.0, head);
     let free = coefficient * width * head * sqrt(head);
     let ratio = behind / head;
-    return free * pow(max(1.0 - ratio * sqrt(ratio), 0.0), 0.385);
+    return free * pow(max(1.0 - ratio * sqrt(ratio), 0.0), SUBMERGENCE_EXPONENT);
 }
 
 struct Culvert {

@@ -1,6 +1,6 @@
 //! What the host and the kernels that make water on the device share: one declaration, from which the WGSL comes too.
 
-use super::super::{sides, water};
+use super::super::{droplet, sides, water};
 use crate::shared::{Bound, DropletInstance, Vertex, Vertices};
 use corpuscle_gpu::{AtomicU32, DeviceParticles, THREADS};
 
@@ -31,6 +31,12 @@ corpuscle_gpu::declare! {
         pub const CLOSED: [f32; 2] = single(water::CLOSED);
         /// Energy over mass between which foam comes, m2/s2.
         pub const ENERGY: [f32; 2] = single(water::ENERGY);
+        /// Foam on particles in the air.
+        pub const SPRAY_FOAM: f32 = water::SPRAY_FOAM as f32;
+        /// Less foam is not kept from picture to picture.
+        pub const LEAST_FOAM: f32 = water::LEAST_FOAM as f32;
+        /// Drawn particles have their ids modulo it, by which tests tell them apart.
+        pub const DRAWN_NUMBERS: u32 = droplet::DRAWN_NUMBERS;
         /// How well particles must cover a node of a border for water to be there.
         pub const COVERED: f32 = sides::COVERED as f32;
         /// Larger than any height: stands for none.

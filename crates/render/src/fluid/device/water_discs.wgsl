@@ -3,11 +3,6 @@
 #import water_planes
 #import water_borders
 
-// Foam on particles in the air.
-const SPRAY = 0.15;
-// Numbers that tests tell particles apart by.
-const NUMBERS = 4096u;
-
 // Linear step between two values: 0 at the first, 1 at the second.
 fn part(value: f32, between: vec2f) -> f32 {
     return clamp((value - between.x) / (between.y - between.x), 0.0, 1.0);
@@ -18,13 +13,13 @@ fn volume(i: u32) -> f32 {
 }
 
 fn numbered(i: u32) -> f32 {
-    return f32(matter[i].y % NUMBERS);
+    return f32(matter[i].y % DRAWN_NUMBERS);
 }
 
 fn in_air(i: u32) -> DropletInstance {
     let radius = water.unit * pow(0.75 * volume(i) / PI, 1.0 / 3.0);
     let place = water.unit * sites[i].xyz;
-    return DropletInstance(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY, radius, numbered(i)), vec2f(0.0), vec2f(0.0));
+    return DropletInstance(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY_FOAM, radius, numbered(i)), vec2f(0.0), vec2f(0.0));
 }
 
 // Whether a place is no farther than that from a border of the ground, m.

@@ -2,9 +2,6 @@
 // `Water::keep_foam` in `water.rs`.
 #import water_device
 
-// Least foam that is stored.
-const LEAST = 0.01;
-
 fn foam_around(i: u32) -> f32 {
     let own = sites[i];
     let reach = REACH * own.w;
@@ -34,7 +31,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let slot = matter[i].y & water.memory;
     let now = max(foam_around(i), water.left * before[slot]);
     instances[i].matter.y = now;
-    if now > LEAST {
+    if now > LEAST_FOAM {
         atomicMax(&after[slot], bitcast<u32>(now));
     }
 }
