@@ -1,13 +1,12 @@
 //! What is drawn on the GPU is what the frame has, and nothing comes back for it.
 
 use corpuscle_dew::Dew;
+use corpuscle_dew::humid_air::ZERO_CELSIUS;
 use corpuscle_gpu::{DeviceParticles, Gpu, require_gpu};
 use corpuscle_model::{AdvanceObserver, Frame, Glance, GpuModel, Model, ModelProgress, ParticleSet, Values};
 use corpuscle_scene::{Scene, builtin};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-const ZERO_CELSIUS: f64 = 273.15;
 
 fn open(name: &str) -> Dew {
     let mut scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();

@@ -32,7 +32,7 @@ pub use image::Image;
 pub use kernel::{Kernel, MOST_GROUPS, THREADS, Task};
 pub use particles::{DeviceParticle, DeviceParticles};
 pub use pass::{Pass, PassTiming, Stopwatch, submit};
-pub use reflect::{check_layouts, check_layouts_in, check_shader};
+pub use reflect::{MOST_STORAGE_BUFFERS, MOST_THREADS, check_layouts, check_layouts_in, check_shader};
 pub use shader::{COMPENSATED_SUMS, GROUP_REDUCTION, SUMS_BEFORE, ShaderLibrary, join};
 pub use sort::{CellSort, SortSlots, sort_blocks};
 pub use steps::{

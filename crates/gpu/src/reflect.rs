@@ -6,10 +6,10 @@ use naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validato
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Threads in a group at most, on the portable floor.
-const MOST_THREADS: u32 = 256;
+pub const MOST_THREADS: u32 = 256;
 
 /// Storage buffers that a stage uses at most, on the portable floor.
-const MOST_STORAGE_BUFFERS: usize = 8;
+pub const MOST_STORAGE_BUFFERS: usize = 8;
 
 /// How a shader uses a binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

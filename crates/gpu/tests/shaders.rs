@@ -1,14 +1,9 @@
 //! Every shader of the project: valid, and within the portable floor.
 
-use corpuscle_gpu::DECLARED;
+use corpuscle_gpu::{DECLARED, MOST_STORAGE_BUFFERS, MOST_THREADS};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Threads in a group at most.
-const MOST_THREADS: u32 = 256;
-/// Storage buffers a stage at most.
-const MOST_STORAGE_BUFFERS: usize = 8;
 
 fn shaders_below(folder: &Path, found: &mut Vec<PathBuf>) {
     for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {

@@ -24,7 +24,7 @@ fn sorted(gpu: &Gpu, cell_of: &[u32], cells: usize) -> (Vec<u32>, Vec<u32>) {
     write(&sort.places, bytemuck::cast_slice(&places));
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut pass = Pass::begin(&mut encoder, None);
-    sort.sort(&mut pass, &groups, SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 });
+    sort.sort(&mut pass, &groups, SortSlots::FIRST);
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
     assert!(wait_for(read::<u32>(gpu, &sort.counts, cells)).unwrap().iter().all(|&count| count == 0));

@@ -7,12 +7,12 @@ use corpuscle_model::{Container, Frame, ParticleSet};
 use corpuscle_render::{Axes, BallStyle, Balls, ColourTable, Drawable, Floor, Key, Light, Overlay, Shading, Stage};
 
 /// Default azimuth and elevation of the camera, radians: to the right of the front, from above.
-const DIRECTION: [f64; 2] = [-1.02, 0.36];
+pub(super) const DIRECTION: [f64; 2] = [-1.02, 0.36];
 /// Margin for axes.
 const OWN_VIEW: OwnView =
     OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.085, margins: [0.11, 0.11, 0.14, 0.1] };
 /// Azimuth of the sun to the left of the camera, radians.
-const SUN: f64 = -0.9;
+pub(super) const SUN: f64 = -0.9;
 /// Least radius of a particle, fraction of the picture's height.
 const LEAST_RADIUS: f64 = 0.004;
 /// Margin round particles without a box, fraction of their extent.

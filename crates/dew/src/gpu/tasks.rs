@@ -33,7 +33,7 @@ pub(super) fn pieces(kernel: &str) -> Vec<(&str, &str)> {
 }
 
 /// Slots of the numbers of groups: see `dew_finish.wgsl`.
-const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
+const SLOTS: SortSlots = SortSlots::FIRST;
 const SOLIDS: u32 = 4;
 const BODIES: u32 = 5;
 

@@ -3,8 +3,7 @@
 //! Temperatures are in K, pressures in Pa. Air and vapour are ideal gases. Saturation is over liquid water at all
 //! temperatures: frost is out of scope, and [`is_frost`] gives where it would form.
 
-/// 0 °C, K.
-pub const ZERO_CELSIUS: f64 = 273.15;
+pub use corpuscle_scene::dew::ZERO_CELSIUS;
 
 /// Gas constant, J/(mol K): exact by the definition of the mole and the kelvin (SI, 2019).
 const GAS_CONSTANT: f64 = 8.314_462_618_153_24;

@@ -86,7 +86,8 @@ impl Sampler<'_> {
             return Sample::default();
         }
         let near = |each: &mut dyn FnMut(&Particle, f64)| {
-            for particle in self.near(from_x, from_y, SEARCH_MARGIN * self.arrangement.cells.reach_at([from_x, from_y])) {
+            for particle in self.near(from_x, from_y, SEARCH_MARGIN * self.arrangement.cells.reach_at([from_x, from_y]))
+            {
                 let dx = x - (particle.x + self.since * particle.u);
                 let dy = y - (particle.y + self.since * particle.v);
                 let h = SAMPLED * particle.h;

@@ -82,6 +82,9 @@ use water::{Column, Water};
 /// Density of water, kg/m3.
 const DENSITY: f64 = 1000.0;
 
+/// Cells, or faces, that a thread goes through at a time.
+const CHUNK: usize = 1024;
+
 /// A flood by scheme `voronoi`.
 pub struct VoronoiFlood {
     settings: Settings,

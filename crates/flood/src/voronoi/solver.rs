@@ -4,6 +4,7 @@
 //! Cells and faces are processed in chunks; chunks without water, and without water beside them, are left out. Every cell gathers what its
 //! faces bring in the order of its links, so that the result does not depend on the number of threads.
 
+use super::CHUNK;
 use super::boundaries::Now;
 use super::domain::Domain;
 use super::fluxes::{Flux, Inputs, OnFaces, fluxes_of_chunk};
@@ -17,9 +18,6 @@ use super::water::{Column, Slopes, Water};
 use corpuscle_model::{ExactSum, ROUNDERS, ReproducibleSum};
 use corpuscle_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
-
-/// Cells and faces in a chunk.
-const CHUNK: usize = 1024;
 
 /// Time step over the width of a cell and the speed of waves in it: half the stability limit of the scheme in one dimension
 /// (Audusse et al. 2004, equation 3.16), nearly in full.

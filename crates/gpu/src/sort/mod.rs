@@ -81,6 +81,11 @@ pub struct SortSlots {
     pub once: u32,
 }
 
+impl SortSlots {
+    /// The first slots of a model, in this order.
+    pub const FIRST: Self = Self { particles: 0, cells: 1, blocks: 2, once: 3 };
+}
+
 /// Groups that add up the counts of so many cells.
 pub fn sort_blocks(cells: usize) -> usize {
     cells.div_ceil(BLOCK)

@@ -53,7 +53,8 @@ pub(crate) struct Chart {
 const LEFT: f64 = 48.0;
 const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 34.0;
-const SPACE_OF_LETTER: f64 = 6.6;
+/// Width of a letter of a legend, about.
+pub(super) const SPACE_OF_LETTER: f64 = 6.6;
 /// Height of a step of the vertical axis at least.
 const SPACE_OF_STEP: f64 = 23.0;
 /// Steps below this have their power of ten written out.

@@ -31,6 +31,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 pub use validation::{ValidatedCase, ValidatedMeasure, ValidationReport};
 
+/// Width and height of a chart of a model, CSS pixels.
+const CHART: [f64; 2] = [482.0, 310.0];
+
 /// The report of a flood.
 #[derive(Debug)]
 pub struct Report {

@@ -1,7 +1,7 @@
 //! The report of a model without its own: gauges, charts, balances, and the command that repeats the run.
 
 use super::parts::{self, KeyFigure, how_it_ended};
-use super::{folder_name, title_or_folder};
+use super::{CHART, folder_name, title_or_folder};
 use crate::picture::{Figure, number, plot, svg_to_png, time};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, OutputError, Summary};
@@ -9,9 +9,6 @@ use corpuscle_model::{Chart, ChartAxis, ChartSeries, GaugeColumn, Model};
 use corpuscle_scene::Scene;
 use std::fs;
 use std::path::Path;
-
-/// Width and height of a chart, CSS pixels.
-const CHART: [f64; 2] = [482.0, 310.0];
 
 /// The run of any model, for its report.
 pub struct PlainReport<'a> {

@@ -56,7 +56,12 @@ impl Droplet {
             radius: stage.length(self.radius),
             normal: DVec3::from(self.normal).normalize_or(DVec3::Z).as_vec3().into(),
             flatness: self.flatness as f32,
-            matter: [depth as f32, self.foam as f32, stage.length(self.reach), (self.id % u64::from(DRAWN_NUMBERS)) as f32],
+            matter: [
+                depth as f32,
+                self.foam as f32,
+                stage.length(self.reach),
+                (self.id % u64::from(DRAWN_NUMBERS)) as f32,
+            ],
             flow: self.flow.map(|along| along as f32),
             unused: [0.0; 2],
         };

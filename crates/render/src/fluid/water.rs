@@ -82,8 +82,11 @@ impl Water {
             droplet.foam = droplet.foam.max(left * before);
         }
         self.time = Some(time);
-        self.foam =
-            droplets.iter().filter(|droplet| droplet.foam > LEAST_FOAM).map(|droplet| (droplet.id, droplet.foam)).collect();
+        self.foam = droplets
+            .iter()
+            .filter(|droplet| droplet.foam > LEAST_FOAM)
+            .map(|droplet| (droplet.id, droplet.foam))
+            .collect();
     }
 }
 

@@ -14,6 +14,9 @@ pub use solids::*;
 use crate::KernelName;
 use serde::{Deserialize, Serialize};
 
+/// 0 °C, K.
+pub const ZERO_CELSIUS: f64 = 273.15;
+
 /// The `[dew]` table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -3,6 +3,7 @@
 use super::{MATT, caps};
 use crate::Error;
 use crate::pictures::{CameraOffset, DrawContext, Moment, Quality, Shown};
+use corpuscle_dew::humid_air::ZERO_CELSIUS;
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_drawing::text;
 use corpuscle_model::{ParticleSet, Surface, Values};
@@ -16,8 +17,6 @@ use corpuscle_scene::Dew;
 const MARGINS: [f64; 4] = [0.13, 0.4, 0.12, 0.095];
 /// Radius of a ball of air, part of the spacing.
 pub(super) const RADIUS: f64 = 0.3;
-/// 0 °C, K.
-pub(super) const ZERO_CELSIUS: f64 = 273.15;
 
 /// What a section shows.
 pub(super) struct Section {

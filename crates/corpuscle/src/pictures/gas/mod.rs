@@ -4,6 +4,7 @@ mod page;
 mod sides;
 mod sketch;
 
+use super::particles::{DIRECTION, SUN};
 use super::{DrawContext, Moment, OwnView, Quality, Shown, Subject};
 use crate::Error;
 use corpuscle_drawing::colour::{VIRIDIS, split};
@@ -15,8 +16,6 @@ use corpuscle_render::{
 use corpuscle_scene::{Gas, padded};
 use sides::Plates;
 
-/// Default azimuth and elevation of the camera in three dimensions (to the right of the front, from above), and field of view, radians.
-const DIRECTION: [f64; 2] = [-1.02, 0.36];
 /// Margin for axes in three dimensions, fraction of the picture.
 const OWN_VIEW: OwnView =
     OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.085, margins: [0.12, 0.12, 0.16, 0.09] };
@@ -27,8 +26,6 @@ const BELOW: [f64; 4] = [0.11, 0.06, 0.16, 0.095];
 const IN_WINDOW: [f64; 4] = [0.12, 0.05, 0.12, 0.11];
 /// Most entries of a legend in a row.
 const MOST_IN_A_ROW: usize = 4;
-/// Azimuth of the sun to the left of the camera, radians.
-const SUN: f64 = -0.9;
 /// Least radius of a ball that is drawn, pixels of a picture 1080 pixels high, in the plane and in space; and in any picture.
 const LEAST_RADIUS: [f64; 2] = [2.4, 4.5];
 const LEAST_OF_ALL: f64 = 1.2;

@@ -51,7 +51,7 @@ const FORCES: Shader = ("sph_forces", include_str!("../sph_forces.wgsl"));
 const FINISH: Shader = ("sph_finish", include_str!("sph_finish.wgsl"));
 
 /// Slots of the numbers of groups: see `sph_finish.wgsl`.
-const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
+const SLOTS: SortSlots = SortSlots::FIRST;
 
 /// The slot of drops in the air.
 const IN_AIR: u32 = 4;
@@ -181,10 +181,7 @@ impl Tasks {
 mod tests {
     use super::super::{gauges, maps, seen};
     use super::*;
-    use corpuscle_gpu::{Buffers, check_shader};
-
-    /// Storage buffers a stage at most, as everywhere.
-    const MOST_STORAGE_BUFFERS: usize = 8;
+    use corpuscle_gpu::{Buffers, MOST_STORAGE_BUFFERS, check_shader};
 
     #[test]
     fn every_shader_is_valid_and_within_the_floor() {

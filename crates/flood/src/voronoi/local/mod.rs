@@ -6,6 +6,7 @@
 //! every flux counts for the same time on both sides of its face, and each cell goes on by means of Euler steps, none of which takes more water than there is.
 //! Where nothing nearby has a lower level each repetition would give the same bits, and is left out.
 
+use super::CHUNK;
 use super::domain::{Domain, total};
 use super::mesh::Mesh;
 use super::water::{Column, Water};
@@ -29,9 +30,6 @@ pub(crate) const REACH: usize = (1 << HIGHEST) + (1 << (HIGHEST - 1)) + REPEATED
 
 /// Steps of their own are taken where they save at least this part of the work.
 pub(crate) const LEAST_SAVED: f64 = 0.25;
-
-/// Cells that are gone through by a thread at a time.
-const CHUNK: usize = 1024;
 
 /// The state of all cells that take steps of their own.
 #[derive(Default)]

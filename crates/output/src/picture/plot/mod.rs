@@ -2,13 +2,13 @@
 
 mod axis;
 
+use super::chart::SPACE_OF_LETTER;
 use super::svg::{Anchor, Figure, Svg};
 use axis::Axis;
 use corpuscle_model::{Chart, ChartSeries, ChartStyle};
 
 const RIGHT: f64 = 16.0;
 const BOTTOM: f64 = 44.0;
-const SPACE_OF_LETTER: f64 = 6.6;
 
 /// The drawing area of a chart.
 struct Plot {

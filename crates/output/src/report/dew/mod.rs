@@ -5,7 +5,7 @@ mod charts;
 mod facts;
 mod picture;
 
-use super::{folder_name, moments, parts, title_or_folder};
+use super::{CHART, folder_name, moments, parts, title_or_folder};
 use crate::picture::{Figure, plot, svg_to_png, svg_url};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, OutputError, Summary};
@@ -13,9 +13,6 @@ use corpuscle_model::Model;
 use corpuscle_scene::{Dew, Scene};
 use std::fs;
 use std::path::Path;
-
-/// Width and height of a chart, CSS pixels.
-const CHART: [f64; 2] = [482.0, 310.0];
 
 /// The run of dew, for its report.
 pub struct DewReport<'a> {

@@ -7,7 +7,7 @@ mod picture;
 
 pub use picture::gas_key;
 
-use super::{moments, title_or_folder};
+use super::{CHART, moments, title_or_folder};
 use crate::picture::{Figure, plot, svg_to_png};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, OutputError, Summary};
@@ -16,9 +16,6 @@ use corpuscle_scene::{Gas, Scene};
 use rayon::prelude::*;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Width and height of a chart, CSS pixels.
-const CHART: [f64; 2] = [482.0, 310.0];
 
 /// The run of a gas, for its report.
 pub struct GasReport<'a> {

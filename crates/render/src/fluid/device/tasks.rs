@@ -7,7 +7,7 @@ use crate::shared::{DropletInstance, SPLAT_COUNT};
 use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Pass, SortSlots, Stopwatch, Task, storage, wgpu};
 
 /// Slots of the numbers of groups: see [`Memory::groups`].
-const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
+const SLOTS: SortSlots = SortSlots::FIRST;
 
 /// Pairs of passes that limit slopes, at most. After a pair heights are in the buffer where they were before.
 const SETTLINGS: usize = 6;

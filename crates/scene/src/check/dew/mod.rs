@@ -5,10 +5,10 @@ mod solids;
 
 use super::{Check, Checked, SIDES};
 use crate::Axis;
-use crate::dew::{Air, AirInflow, Dew, Drops, Face, Fan, LowUtility, Transport};
+use crate::dew::{Air, AirInflow, Dew, Drops, Face, Fan, LowUtility, Transport, ZERO_CELSIUS};
 
 /// 0 K in °C.
-const ABSOLUTE_ZERO: f64 = -273.15;
+const ABSOLUTE_ZERO: f64 = -ZERO_CELSIUS;
 
 /// The formula for saturated vapour is meant for liquid water: Bolton (1980) fitted it from -30 to 35 °C.
 const COLDEST_AIR: f64 = -100.0;
