@@ -34,25 +34,18 @@ fn collect(folder: &Path, of: &str, extension: &str, found: &mut Vec<Source>) {
     }
 }
 
-/// Name and value of the constants of a text, Rust or WGSL, whose values are numbers: one to a line.
-fn constants(text: &str) -> Vec<(&str, Vec<f64>)> {
-    let constant = |line: &'_ str| -> Option<(usize, usize, Vec<f64>)> {
-        let start = line.find("const ")? + "const ".len();
-        let length = line[start..].find([':', ' ', '='])?;
-        let value = line[start..].split_once('=')?.1.trim().strip_suffix(';')?;
-        Some((start, length, numbers(value)?))
-    };
-    let lines = text.lines().filter(|line| !line.trim_start().starts_with("//"));
-    lines
-        .filter_map(|line| constant(line).map(|(start, length, value)| (&line[start..start + length], value)))
-        .collect()
+/// The names of the constants of a text, Rust or WGSL.
+fn constants(text: &str) -> Vec<&str> {
+    let lines = text.lines().map(str::trim_start).filter(|line| !line.starts_with("//"));
+    lines.filter_map(constant).collect()
 }
 
-/// A number, or numbers between brackets; none where it is anything else.
-fn numbers(value: &str) -> Option<Vec<f64>> {
-    let inside = value.split_once(['(', '[']).map_or(value, |(_, inside)| inside.trim_end_matches([')', ']']));
-    let number = |text: &str| text.trim().replace('_', "").trim_end_matches(['u', 'f', 'i']).parse::<f64>().ok();
-    inside.split(',').map(number).collect()
+/// The name of the constant that a line declares.
+fn constant(line: &str) -> Option<&str> {
+    let (before, rest) = line.split_once("const ")?;
+    let is_declared = before.is_empty() || before.starts_with("pub");
+    let (name, _) = rest.split_once([':', ' ', '='])?;
+    (is_declared && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_')).then_some(name)
 }
 
 /// Name and members of the structures of a WGSL text, without comments and spaces.
@@ -69,15 +62,15 @@ fn structures(text: &str) -> Vec<(String, String)> {
     found
 }
 
-/// Constants that two shaders have with one name and value, or a shader and the Rust code of its crate.
+/// Constants that two shaders have by one name, with the same value or another, or a shader and the Rust code of its crate or of the crate for all that have shaders.
 fn repeated_constants(shaders: &[Source], code: &[Source]) -> Vec<String> {
     let mut repeated = Vec::new();
     for (number, shader) in shaders.iter().enumerate() {
-        for (name, value) in constants(&shader.text) {
-            let of_crate = code.iter().filter(|source| source.of == shader.of);
+        for name in constants(&shader.text) {
+            let of_crate = code.iter().filter(|source| source.of == shader.of || source.of == "gpu");
             let others = shaders[number + 1..].iter().chain(of_crate);
-            let same = others.filter(|other| constants(&other.text).contains(&(name, value.clone())));
-            repeated.extend(same.map(|other| format!("{name} = {value:?}: {} and {}", shader.file, other.file)));
+            let same = others.filter(|other| constants(&other.text).contains(&name));
+            repeated.extend(same.map(|other| format!("{name}: {} and {}", shader.file, other.file)));
         }
     }
     repeated
@@ -151,11 +144,11 @@ fn what_stands_twice_is_found() {
     let source = |file: &str, text: &str| Source { file: file.into(), of: "flood".into(), text: text.into() };
     let shaders = [
         source("a.wgsl", "const THIN = 1e-6;\nconst NAMES = 3u;\nstruct A {\n    // m\n    depth: f32,\n}\n"),
-        source("b.wgsl", "const THIN: f32 = 0.000001;\nconst PAIR = vec2f(1.5, 2.0);\nstruct B { depth: f32, }\n"),
+        source("b.wgsl", "const THIN: f32 = 2e-6;\nconst PAIR = vec2f(1.5, 2.0);\nstruct B { depth: f32, }\n"),
     ];
     let code = [source(
         "c.rs",
-        "pub(crate) const NAMES: usize = 3;\n/// const NAMES = 3;\nconst OTHER: f64 = 3.0;\nconst PAIR: [f64; 2] = [1.5, 2.0];",
+        "pub(crate) const NAMES: usize = 4;\n/// const NAMES = 3;\nconst OTHER: f64 = 3.0;\n    const PAIR: [f64; 2] = [1.5, 2.0];\nconst fn thin() {}",
     )];
     let constants = repeated_constants(&shaders, &code);
     let found = ["THIN", "NAMES", "PAIR"].map(|name| constants.iter().filter(|line| line.starts_with(name)).count());

@@ -6,7 +6,7 @@
 @group(2) @binding(0) var behind: texture_2d<f32>;
 @group(2) @binding(1) var behind_sampler: sampler;
 
-const MOST_STEPS: i32 = 28;
+const MOST_SIGHT_STEPS: i32 = 28;
 // Refractive index of water as drops have it; that of floods is 1.333 (`fluid_shade.wgsl`): each has its reviewed pictures.
 const DROP_INDEX: f32 = 1.33;
 // The part of the surroundings in what is seen through a drop.
@@ -71,7 +71,7 @@ fn fragment(corner: Corner) -> Drawn {
     var distance = reach.x;
     var found = vec4f(0.0, 0.0, 0.0, 1.0);
     let near_enough = 0.002 * cap.radius;
-    for (var step = 0; step < MOST_STEPS; step++) {
+    for (var step = 0; step < MOST_SIGHT_STEPS; step++) {
         found = from_drops(cap, sight.origin + distance * sight.direction);
         distance += found.w;
         if found.w < near_enough || distance > reach.y {

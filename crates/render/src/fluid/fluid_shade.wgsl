@@ -18,7 +18,7 @@ const STRAIGHT: f32 = 0.02;
 // Light that a bed gives back that is out of sight.
 const BED: vec3f = vec3f(0.16, 0.15, 0.09);
 // How well particles cover a place in closed water: a sum of poly6 weights.
-const CLOSED: f32 = 3.1;
+const CLOSED_COVER: f32 = 3.1;
 // How well they cover a place (halfway out of a straight shore 1.5) where water begins to be seen, and where
 // nothing else is: shores follow this, not the rims of discs.
 const SHORE: vec2f = vec2f(0.35, 0.65);
@@ -59,7 +59,7 @@ fn seen_through(pixel: vec2i, place: vec3f, way: vec3f) -> vec3f {
 fn whole_thickness(matter: vec4f, place: vec3f) -> f32 {
     let inside = min(place.xy - fluid.within.xy, fluid.within.zw - place.xy);
     let beside = 1.0 - smoothstep(0.0, 2.0 * fluid.smoothing.x, min(inside.x, inside.y));
-    return matter.r * mix(1.0, clamp(CLOSED / max(matter.a, 0.1), 1.0, 4.0), beside);
+    return matter.r * mix(1.0, clamp(CLOSED_COVER / max(matter.a, 0.1), 1.0, 4.0), beside);
 }
 
 @compute @workgroup_size(PIXELS_ACROSS, PIXELS_DOWN)

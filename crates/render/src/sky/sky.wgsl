@@ -19,7 +19,7 @@ fn window(direction: vec3f) -> vec3f {
 
 // How far what is out of focus is spread, radians; and how far the street's end lies below the room.
 const OUT_OF_FOCUS: f32 = 0.016;
-const BELOW: f32 = 0.2;
+const STREET_BELOW: f32 = 0.2;
 // Lights round the circle, where there is one in each place.
 const LIGHTS: f32 = 150.0;
 
@@ -60,7 +60,7 @@ fn lights(turn: f32, height: f32) -> vec3f {
 // A street on a bright evening, out of focus, all round a room whose walls are glass.
 fn street(direction: vec3f) -> vec3f {
     let turn = fract(atan2(direction.y, direction.x) / (2.0 * PI) + 1.0);
-    let height = direction.z + BELOW;
+    let height = direction.z + STREET_BELOW;
     let dusk = vec3f(1.06, 0.90, 0.74);
     let overhead = mix(dusk, view.above.rgb, smoothstep(0.02, 0.5, height));
     let far = houses(turn, height, 71.0, 1.0, 0.12, 0.0);

@@ -57,11 +57,11 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     return vec4f(hazed(matt(own.colour, own.normal, shine), corner.place), 1.0);
 }
 
-// Bare rock and earth, linear.
-const ROCK: vec3f = vec3f(0.23, 0.20, 0.165);
+// Bare rock and earth, linear: the grain within cells, whose own colours are those of `natural.rs`.
+const BARE_ROCK: vec3f = vec3f(0.23, 0.20, 0.165);
 const EARTH: vec3f = vec3f(0.145, 0.115, 0.06);
 // Slopes at which rock begins to show and from which there is nothing else.
-const STEEP: vec2f = vec2f(0.5, 1.0);
+const ROCKY_SLOPES: vec2f = vec2f(0.5, 1.0);
 // Octaves of the grain, the longest of which is so many cells long.
 const OCTAVES: i32 = 6;
 const LONGEST: f32 = 6.0;
@@ -95,10 +95,10 @@ fn natural(place: vec3f, colour: vec3f, steepness: f32, smooth_normal: vec3f) ->
     // Where patches and grain agree the turf is worn.
     let bare = smoothstep(0.50, 0.90, patches + 0.6 * grain);
     let grown = mix(green, EARTH * (1.0 + grain), 0.75 * bare);
-    let rocky = smoothstep(STEEP.x, STEEP.y, steepness + 0.35 * patches + 0.25 * grain);
+    let rocky = smoothstep(ROCKY_SLOPES.x, ROCKY_SLOPES.y, steepness + 0.35 * patches + 0.25 * grain);
     let strength = mix(0.09, 0.22, rocky);
     let normal = normalize(smooth_normal - strength * (tilt - dot(tilt, smooth_normal) * smooth_normal));
-    return Matter(mix(grown, ROCK * (1.0 + 0.9 * grain), rocky), normal);
+    return Matter(mix(grown, BARE_ROCK * (1.0 + 0.9 * grain), rocky), normal);
 }
 
 // The same without shadows and grain.

@@ -2,7 +2,7 @@
 #import declared
 
 // Of a level where there is no water.
-const DRY = -FAR;
+const NO_LEVEL = -FAR;
 
 fn over_weir(crest: f32, width: f32, coefficient: f32, upper: f32, lower: f32) -> f32 {
     let head = max(upper - crest, 0.0);

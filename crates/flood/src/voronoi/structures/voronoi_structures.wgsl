@@ -30,7 +30,7 @@ fn apply(place: InPatch, volume: vec2f, momentum: vec2f) -> vec4f {
     return vec4f(gained, energy, momentum.x + momentum.y);
 }
 
-// Mean level of the wet cells of a patch by area; `DRY` where there are none.
+// Mean level of the wet cells of a patch by area; `NO_LEVEL` where there are none.
 fn level_of(thread: u32, own: Structure, end: u32) -> f32 {
     var sums = vec4f(0.0);
     for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
@@ -41,7 +41,7 @@ fn level_of(thread: u32, own: Structure, end: u32) -> f32 {
         }
     }
     sums = reduce_group(thread, sums);
-    return select(DRY, sums.w / sums.z, sums.z > 0.0);
+    return select(NO_LEVEL, sums.w / sums.z, sums.z > 0.0);
 }
 
 // Takes a volume from the cells in proportion to what they hold, and all they hold at most, with its velocity.
@@ -112,13 +112,13 @@ fn by_law(own: Structure, upper: f32, lower: f32, forward: bool) -> f32 {
         return over_weir(number(own.numbers), number(own.numbers + 1u), number(own.numbers + 2u), upper, lower);
     }
     // Where it has run dry the fall is not known: as from the same ground.
-    return value_at(own.table, vec2f(select(upper - lower, 0.0, lower == DRY), 0.0));
+    return value_at(own.table, vec2f(select(upper - lower, 0.0, lower == NO_LEVEL), 0.0));
 }
 
 // Discharge required, positive from the first end to the second: see `Link::discharge`.
 fn of_link(own: Structure, first: f32, second: f32) -> f32 {
     if first >= second {
-        return select(by_law(own, first, second, true), 0.0, first == DRY);
+        return select(by_law(own, first, second, true), 0.0, first == NO_LEVEL);
     }
     if own.both_ways == 1u {
         return -by_law(own, second, first, false);
@@ -142,7 +142,7 @@ fn lead(thread: u32, number: u32, own: Structure) -> vec4f {
 
 fn let_out(thread: u32, number: u32, own: Structure) -> vec4f {
     let level = level_of(thread, own, 0u);
-    let wanted = select(max(value_at(own.table, vec2f(level, 0.0)), 0.0), 0.0, level == DRY);
+    let wanted = select(max(value_at(own.table, vec2f(level, 0.0)), 0.0), 0.0, level == NO_LEVEL);
     let change = take(thread, own, 0u, wanted * status.step);
     if thread == 0u {
         structure_discharges[number] = -change.x / status.step;

@@ -5,7 +5,7 @@
 fn flow_over(crest: Crest) -> vec3f {
     let first = crest.cells.x;
     let second = crest.cells.y;
-    var levels = vec2f(DRY);
+    var levels = vec2f(NO_LEVEL);
     if water[first].depth > 0.0 {
         levels.x = water[first].depth + water[first].shift;
     }
