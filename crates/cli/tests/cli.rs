@@ -188,6 +188,17 @@ fn validation_makes_a_page() {
 }
 
 #[test]
+fn an_old_name_is_told() {
+    let place = Place::new();
+    place.write("lake.toml", &LAKE.replace("[flood]\n", "[flood]\nscheme = \"paper\"\n"));
+    let told = place.run(&["run", "lake.toml", "-o", "lake"]).expect_status(0).stderr;
+    let log = String::from_utf8(place.read("lake/log.txt")).unwrap();
+    for text in [told, log] {
+        assert!(text.contains("note: lake.toml:") && text.contains("write flood.scheme = \"sph-swe\""), "{text}");
+    }
+}
+
+#[test]
 fn a_spacing_that_is_left_out_is_chosen_from_the_terrain_and_told() {
     let place = Place::new();
     place.write("lake.toml", &LAKE.replace("spacing_m = 2.0\n", ""));

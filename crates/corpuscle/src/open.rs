@@ -92,6 +92,7 @@ impl Simulation {
             return Err(ModelError::Setup(what.into()).into());
         }
         let Opened { model, terrain, notes } = kind.open(opening)?;
+        let notes = [scene.notes.clone(), notes].concat();
         Ok(Self::new(scene, terrain, model).with_notes(notes))
     }
 }

@@ -40,7 +40,7 @@ impl Simulation {
         Self { notes, ..self }
     }
 
-    /// Values chosen from the terrain where the scene leaves them open, in sentences.
+    /// Keys of the scene that have an old name, then values chosen from the terrain where the scene leaves them open, in sentences.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

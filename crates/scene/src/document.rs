@@ -15,12 +15,15 @@ pub(crate) struct Document<'a> {
     text: &'a str,
     overrides: &'a [(String, String)],
     root: Spanned<DeValue<'a>>,
+    /// What had an old name, in sentences that begin with its place.
+    notes: Vec<String>,
 }
 
 impl<'a> Document<'a> {
     /// Parses `text`, then sets each `(path, value)` of `overrides` in it. Old names have become the present ones.
     pub fn parse(text: &'a str, name: &'a str, overrides: &'a [(String, String)]) -> Result<Self, Box<Problem>> {
-        let mut document = Self { name, text, overrides, root: Spanned::new(0..0, DeValue::Table(DeTable::new())) };
+        let root = Spanned::new(0..0, DeValue::Table(DeTable::new()));
+        let mut document = Self { name, text, overrides, root, notes: Vec::new() };
         let table = DeTable::parse(text).map_err(|error| {
             let what = format!("this is not TOML: {}", error.message().trim_end());
             Box::new(Problem { key: String::new(), what, place: error.span().map(|span| document.place(&span)) })
@@ -29,8 +32,11 @@ impl<'a> Document<'a> {
         document.rename_old()?;
         let mut offset = text.len() + 1;
         for (path, value) in overrides {
-            set(&mut document.root, path, override_value(value, offset)).map_err(|what| {
-                let place = Some(document.place(&(offset..offset + value.len())));
+            let span = offset..offset + value.len();
+            let (words, note) = old_names::present(path);
+            document.notes.extend(note.map(|note| document.placed(&span, &note)));
+            set(&mut document.root, path, words, override_value(value, offset)).map_err(|what| {
+                let place = Some(document.place(&span));
                 Box::new(Problem { key: path.clone(), what, place })
             })?;
             offset += value.len() + 1;
@@ -40,10 +46,23 @@ impl<'a> Document<'a> {
     }
 
     fn rename_old(&mut self) -> Result<(), Box<Problem>> {
-        old_names::rename(&mut self.root).map_err(|(key, what)| {
+        let renamed = old_names::rename(&mut self.root).map_err(|(key, what)| {
             let place = self.place_of(&key);
             Box::new(Problem { key, what, place })
-        })
+        })?;
+        let notes: Vec<_> = renamed.iter().map(|(span, note)| self.placed(span, note)).collect();
+        self.notes.extend(notes);
+        Ok(())
+    }
+
+    /// A note with its place before it.
+    fn placed(&self, span: &Range<usize>, note: &str) -> String {
+        format!("{}: {note}", self.place(span).address())
+    }
+
+    /// What had an old name, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// The tree with the keys of a flood in feet called as they are in metres; whether it is one.
@@ -156,13 +175,18 @@ fn shifted(value: Spanned<DeValue<'_>>, offset: usize) -> Spanned<DeValue<'_>> {
     Spanned::new(span, inner)
 }
 
-/// Puts `value` at `path`, making tables and lists on the way, and a new row where the index is one past the last.
-fn set<'a>(root: &mut Spanned<DeValue<'a>>, path: &'a str, value: Spanned<DeValue<'a>>) -> Result<(), String> {
+/// Puts `value` at `path`, whose present words are `words`, making tables and lists on the way, and a new row where the index is one past the last.
+fn set<'a>(
+    root: &mut Spanned<DeValue<'a>>,
+    path: &str,
+    words: Vec<&'a str>,
+    value: Spanned<DeValue<'a>>,
+) -> Result<(), String> {
     if path.split('.').any(str::is_empty) {
         return Err(": a path is words joined by dots, as in --set flood.inflow.0.discharge_m3_per_s=30".into());
     }
     let mut node = root;
-    let mut words = old_names::present(path).into_iter().peekable();
+    let mut words = words.into_iter().peekable();
     while let Some(word) = words.next() {
         let holder = match words.peek() {
             Some(&"0") => DeValue::Array(DeArray::new()),

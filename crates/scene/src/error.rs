@@ -97,7 +97,7 @@ pub struct Place {
 const LONGEST_SHOWN: usize = 160;
 
 impl Place {
-    fn address(&self) -> String {
+    pub(crate) fn address(&self) -> String {
         match self.line {
             Some(line) => format!("{}:{line}:{}", self.source, self.column),
             None => self.source.clone(),

@@ -39,7 +39,7 @@ pub use terrain::*;
 use serde::{Deserialize, Serialize};
 
 /// A scene: everything that a run depends on.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Scene {
     /// Title, one line.
     pub title: String,
@@ -51,6 +51,19 @@ pub struct Scene {
     pub run: Run,
     /// What is moved.
     pub model: ModelTables,
+    /// Notes to the user on how it was written, in sentences: of keys read by an old name. They are not part of the scene: neither written out nor compared.
+    pub notes: Vec<String>,
+}
+
+impl PartialEq for Scene {
+    fn eq(&self, other: &Self) -> bool {
+        let Self { title, description, seed, run, model, notes: _ } = self;
+        *title == other.title
+            && *description == other.description
+            && *seed == other.seed
+            && *run == other.run
+            && *model == other.model
+    }
 }
 
 /// Duration of the run and its output intervals. For a gas in reduced units read its unit of time for s.

@@ -1,9 +1,10 @@
 //! What earlier versions called otherwise, or had.
 //!
 //! Scheme `paper` of a flood is `sph-swe`, and its table `[flood.paper]` is `[flood.sph_swe]`; what is written out has the new names. Scheme `balanced` is
-//! gone, and with it `[flood.refinement]`: both are refused. Scenes that a run wrote out held `[flood.balanced]` and `flood.rain.film_m` in every
+//! gone, and with it `[flood.refinement]`: both are refused. A note says what was read by an old name. Scenes that a run wrote out held `[flood.balanced]` and `flood.rain.film_m` in every
 //! scheme; where another scheme is written these are ignored, as they had no effect there.
 
+use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -16,18 +17,29 @@ const SCHEME: [&str; 2] = ["sph-swe", "paper"];
 const GONE: &str = "balanced";
 const GONE_TABLES: [&str; 2] = [GONE, "refinement"];
 
-/// Gives the table and the scheme in a document their present names, and takes out what does nothing.
+/// An old name in a document: where it is written, and a note to the user that says so.
+pub(crate) type Renamed = (Range<usize>, String);
+
+/// A note that `old` is called `new` now.
+fn note(old: &str, new: &str) -> String {
+    format!("{old} is an old name, which is still read: write {new}")
+}
+
+/// Gives the table and the scheme in a document their present names, and takes out what does nothing. Returns what had an old name.
 ///
 /// # Errors
 /// The path of a table that is there by both names, or of what is gone, and what to do.
-pub(crate) fn rename(root: &mut Spanned<DeValue<'_>>) -> Result<(), (String, String)> {
-    let DeValue::Table(root) = root.get_mut() else { return Ok(()) };
-    let Some((_, flood)) = root.iter_mut().find(|(key, _)| key.get_ref() == "flood") else { return Ok(()) };
-    let DeValue::Table(flood) = flood.get_mut() else { return Ok(()) };
-    if let Some(DeValue::String(name)) = flood.get_mut("scheme").map(Spanned::get_mut)
-        && *name == SCHEME[1]
+pub(crate) fn rename(root: &mut Spanned<DeValue<'_>>) -> Result<Vec<Renamed>, (String, String)> {
+    let mut renamed = Vec::new();
+    let DeValue::Table(root) = root.get_mut() else { return Ok(renamed) };
+    let Some((_, flood)) = root.iter_mut().find(|(key, _)| key.get_ref() == "flood") else { return Ok(renamed) };
+    let DeValue::Table(flood) = flood.get_mut() else { return Ok(renamed) };
+    if let Some(scheme) = flood.get_mut("scheme")
+        && scheme.get_ref().as_str() == Some(SCHEME[1])
     {
-        *name = SCHEME[0].into();
+        let [new, old] = SCHEME.map(|name| format!("flood.scheme = \"{name}\""));
+        renamed.push((scheme.span(), note(&old, &new)));
+        *scheme.get_mut() = DeValue::String(SCHEME[0].into());
     }
     take_out(flood)?;
     if flood.contains_key(TABLE[1]) && flood.contains_key(TABLE[0]) {
@@ -35,10 +47,16 @@ pub(crate) fn rename(root: &mut Spanned<DeValue<'_>>) -> Result<(), (String, Str
         return Err((format!("flood.{}", TABLE[1]), what));
     }
     if let Some((mut key, table)) = flood.remove_entry(TABLE[1]) {
+        renamed.push((key.span(), note_of_table()));
         *key.get_mut() = TABLE[0].into();
         flood.insert(key, table);
     }
-    Ok(())
+    Ok(renamed)
+}
+
+fn note_of_table() -> String {
+    let [new, old] = TABLE.map(|table| format!("flood.{table}"));
+    note(&old, &new)
 }
 
 /// Refuses scheme balanced, and takes out what does nothing in other schemes.
@@ -63,11 +81,12 @@ fn take_out(flood: &mut DeTable<'_>) -> Result<(), (String, String)> {
     Ok(())
 }
 
-/// The words of a path, with the table's present name.
-pub(crate) fn present(path: &str) -> Vec<&str> {
+/// The words of a path, with the table's present name, and a note where it had the old one.
+pub(crate) fn present(path: &str) -> (Vec<&str>, Option<String>) {
     let mut words: Vec<_> = path.split('.').collect();
-    if words.starts_with(&["flood", TABLE[1]]) {
+    let is_old = words.starts_with(&["flood", TABLE[1]]);
+    if is_old {
         words[1] = TABLE[0];
     }
-    words
+    (words, is_old.then(note_of_table))
 }

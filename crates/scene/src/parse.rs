@@ -40,6 +40,7 @@ impl Scene {
             Unread::Key(key, known) => placed(Problem::new(&*key, unknown_word(&key, &known, true))),
         })?;
         scene.find_problem().and_then(|()| all_was_read(&scene, document)).map_err(placed)?;
+        scene.notes = document.notes().to_vec();
         if in_us {
             units::convert(&mut scene, &document.root())?;
         }

@@ -67,7 +67,7 @@ pub(crate) fn scene(root: Spanned<DeValue<'_>>) -> Result<Scene, Unread> {
     let mut tables = Tables(of_model);
     let kind = kind_of(&kinds, &tables)?;
     let model = kind.read(&mut tables).map_err(Unread::Read)?;
-    Ok(Scene { title, description, seed, run, model })
+    Ok(Scene { title, description, seed, run, model, notes: Vec::new() })
 }
 
 /// The model of a scene: the one that its tables are of.

@@ -170,7 +170,7 @@ fn full(terrain: Terrain) -> Scene {
     };
     let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
     let model = ModelTables::new(FloodScene { terrain, flood });
-    Scene { title: String::new(), description: String::new(), seed: 1, run, model }
+    Scene { title: String::new(), description: String::new(), seed: 1, run, model, notes: Vec::new() }
 }
 
 /// A link of each kind.
@@ -267,7 +267,7 @@ fn full_gas(method: Method) -> Scene {
     };
     let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
     let model = ModelTables::new(gas);
-    Scene { title: String::new(), description: String::new(), seed: 1, run, model }
+    Scene { title: String::new(), description: String::new(), seed: 1, run, model, notes: Vec::new() }
 }
 
 /// A dew scene with every key written, whether or not they go together. No field is left to a default.
@@ -360,7 +360,7 @@ fn full_dew() -> Scene {
     };
     let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
     let model = ModelTables::new(dew);
-    Scene { title: String::new(), description: String::new(), seed: 1, run, model }
+    Scene { title: String::new(), description: String::new(), seed: 1, run, model, notes: Vec::new() }
 }
 
 #[test]

@@ -173,6 +173,26 @@ fn old_names_are_read_and_the_new_ones_written() {
             assert_eq!((flood.scheme, flood.sph_swe.control_square), (Scheme::SphSwe, 0.25), "{path}");
         }
     }
+    let line_of = |text: &str, start: &str| 1 + text.lines().position(|line| line.starts_with(start)).unwrap();
+    let [scheme, table] = ["scheme", "[flood.paper]"].map(|start| line_of(&old, start));
+    assert_eq!(
+        scene.notes,
+        [
+            format!(
+                "test.toml:{scheme}:10: flood.scheme = \"paper\" is an old name, which is still read: write flood.scheme = \"sph-swe\""
+            ),
+            format!("test.toml:{table}:8: flood.paper is an old name, which is still read: write flood.sph_swe"),
+        ]
+    );
+    let scene = read(new, &[("flood.paper.control_square", "0.25"), ("flood.scheme", "paper")]).unwrap();
+    assert_eq!(
+        scene.notes,
+        [
+            "--set flood.paper.control_square=0.25: flood.paper is an old name, which is still read: write flood.sph_swe",
+            "--set flood.scheme=paper: flood.scheme = \"paper\" is an old name, which is still read: write flood.scheme = \"sph-swe\"",
+        ]
+    );
+    assert!(read(new, &[]).unwrap().notes.is_empty());
     let wrong = old.replace("control_square = 0.5", "control_square = -1.0");
     let message = read(&wrong, &[]).unwrap_err().to_string();
     let line = 1 + wrong.lines().position(|line| line.starts_with("control_square")).unwrap();
