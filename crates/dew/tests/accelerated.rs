@@ -1,45 +1,25 @@
 //! Accelerated time: solids change faster, the air does not, and nothing is lost.
 
-use corpuscle_dew::air::Properties;
-use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
-use corpuscle_dew::solids::{Body, Material};
-use corpuscle_dew::{Condensation, Dew, Face, Inflow, Room, Settings, Setup};
+mod common;
+
+use common::{D, GLASS, WARM, advance, through_flow, vapour};
+use corpuscle_dew::solids::Body;
+use corpuscle_dew::{Condensation, Dew, Face, Setup};
 use corpuscle_model::Model;
 use corpuscle_solids::{Pose, Shape, Solid};
-use std::sync::atomic::AtomicBool;
 
-const D: f64 = 2e-3;
-const WARM: f64 = ZERO_CELSIUS + 25.0;
-const COLD: f64 = ZERO_CELSIUS + 5.0;
-const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
 const CLOSED: [[Face; 2]; 3] = [[Face::Wall; 2], [Face::Periodic; 2], [Face::Wall; 2]];
 
-fn vapour(temperature: f64, humidity: f64) -> f64 {
-    HumidAir::with_relative_humidity(temperature, 101_325.0, humidity).mass_fraction()
-}
-
-/// Air round a ball of glass.
+/// Air round a ball of glass, where solids change faster than in reality.
 fn ball(faces: [[Face; 2]; 3], held: bool, time_factor: f64) -> Setup {
-    let size = [12.0 * D, 8.0 * D, 12.0 * D];
-    let solid = Solid::of_shape(Shape::sphere(3.0 * D).unwrap(), Pose::new(size.map(|side| 0.5 * side), [0.0; 3]));
-    Setup {
-        settings: Settings { time_factor, ..Settings::new(D, WARM, vapour(WARM, 0.8)) },
-        air: Properties::at_room_temperature(1.0),
-        room: Room { low: [0.0; 3], high: size, faces },
-        bodies: vec![Body::sampled(solid, D, GLASS, COLD, held).unwrap()],
-        fans: Vec::new(),
-        seed: 1,
-    }
-}
-
-fn through_flow() -> [[Face; 2]; 3] {
-    let inflow = Inflow { velocity: [0.1, 0.0, 0.0], temperature: WARM, vapour: vapour(WARM, 0.8) };
-    [[Face::Inlet(inflow), Face::Outlet], [Face::Periodic; 2], [Face::Wall; 2]]
+    let mut setup = common::ball(faces, held, 1.0);
+    setup.settings.time_factor = time_factor;
+    setup
 }
 
 fn run(setup: &Setup, time: f64) -> Dew {
     let mut dew = Dew::new(setup, |_| [WARM, vapour(WARM, 0.8)]).unwrap();
-    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
+    advance(&mut dew, time);
     dew
 }
 
@@ -51,7 +31,7 @@ fn of_ball(dew: &Dew) -> [f64; 2] {
 #[test]
 fn water_and_energy_balance_with_any_factor() {
     for condensation in [Condensation::Diffusion, Condensation::Particle] {
-        for faces in [CLOSED, through_flow()] {
+        for faces in [CLOSED, through_flow(0.1, 0.8)] {
             for held in [false, true] {
                 let mut setup = ball(faces, held, 25.0);
                 setup.settings.condensation = condensation;
@@ -72,9 +52,9 @@ fn water_and_energy_balance_with_any_factor() {
 #[ignore = "takes a minute; cargo test --release --workspace --test accelerated -- --ignored"]
 fn solids_go_through_the_same_in_less_time() {
     let found = [1.0, 2.0, 8.0].map(|factor| {
-        let mut dew = run(&ball(through_flow(), false, factor), 3.0);
+        let mut dew = run(&ball(through_flow(0.1, 0.8), false, factor), 3.0);
         let before = of_ball(&dew);
-        dew.advance_to(3.0 + 3.0 / factor, &AtomicBool::new(false)).unwrap();
+        advance(&mut dew, 3.0 + 3.0 / factor);
         let after = of_ball(&dew);
         let between = 0.5 * (before[0] + after[0]);
         let driven_by = [WARM - between, vapour(WARM, 0.8) - vapour(between, 1.0)];
@@ -126,7 +106,7 @@ fn air_passes_the_same_heat_with_any_factor() {
         let mut dew = run(&setup, 4.0);
         let before = [0, 1].map(|plate| dew.heat_from(plate));
         let from = dew.stepped_until();
-        dew.advance_to(5.0, &AtomicBool::new(false)).unwrap();
+        advance(&mut dew, 5.0);
         let time = factor * (dew.stepped_until() - from);
         [0, 1].map(|plate| (dew.heat_from(plate) - before[plate]) / time)
     });

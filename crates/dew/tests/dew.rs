@@ -1,54 +1,22 @@
 //! What the model keeps whatever the air does: water and energy, momentum, and its bits.
 
+mod common;
+
+use common::{COLD, D, GLASS, WARM, advance, ball, through_flow, vapour};
 use corpuscle_dew::air::{Properties, Role};
-use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
-use corpuscle_dew::solids::{Body, Material};
+use corpuscle_dew::solids::Body;
 use corpuscle_dew::{Condensation, Dew, Face, Inflow, Mean, Room, Settings, Setup, WallTreatment};
 use corpuscle_model::Model;
 use corpuscle_solids::{Pose, Shape, Solid};
-use std::sync::atomic::AtomicBool;
-
-const D: f64 = 2e-3;
-const WARM: f64 = ZERO_CELSIUS + 25.0;
-const COLD: f64 = ZERO_CELSIUS + 5.0;
-const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
-
-fn vapour(temperature: f64, humidity: f64) -> f64 {
-    HumidAir::with_relative_humidity(temperature, 101_325.0, humidity).mass_fraction()
-}
-
-/// A box of 12 x 8 x 12 particles with a cold ball in its midst.
-fn ball(held: bool, faces: [[Face; 2]; 3]) -> Setup {
-    let size = [12.0 * D, 8.0 * D, 12.0 * D];
-    let shape = Shape::sphere(3.0 * D).unwrap();
-    let solid = Solid::of_shape(shape, Pose::new(size.map(|side| 0.5 * side), [0.0; 3]));
-    Setup {
-        settings: Settings::new(D, WARM, vapour(WARM, 0.8)),
-        air: Properties::at_room_temperature(0.5),
-        room: Room { low: [0.0; 3], high: size, faces },
-        bodies: vec![Body::sampled(solid, D, GLASS, COLD, held).unwrap()],
-        fans: Vec::new(),
-        seed: 1,
-    }
-}
-
-fn through_flow() -> [[Face; 2]; 3] {
-    let inflow = Inflow { velocity: [0.05, 0.0, 0.0], temperature: WARM, vapour: vapour(WARM, 0.9) };
-    [[Face::Inlet(inflow), Face::Outlet], [Face::Periodic; 2], [Face::Wall; 2]]
-}
 
 fn open(setup: &Setup) -> Dew {
     Dew::new(setup, |_| [WARM, vapour(WARM, 0.8)]).unwrap()
 }
 
-fn advance(dew: &mut Dew, time: f64) {
-    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
-}
-
 #[test]
 fn water_and_energy_balance_with_flow_condensation_and_fog() {
     for held in [false, true] {
-        let mut dew = open(&ball(held, through_flow()));
+        let mut dew = open(&ball(through_flow(0.05, 0.9), held, 0.5));
         advance(&mut dew, 1.5);
         let row = dew.gauge_row();
         assert!(row[2] > 0.0, "water on the ball {}", row[2]);
@@ -61,7 +29,7 @@ fn water_and_energy_balance_with_flow_condensation_and_fog() {
 
 #[test]
 fn water_evaporates_into_dry_air_and_no_more_than_there_is() {
-    let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+    let mut setup = ball([[Face::Periodic; 2]; 3], true, 0.5);
     setup.bodies[0].temperature = WARM;
     let mut dew = Dew::new(&setup, |_| [WARM, vapour(WARM, 0.2)]).unwrap();
     dew.wet(0, 1e-5);
@@ -74,7 +42,7 @@ fn water_evaporates_into_dry_air_and_no_more_than_there_is() {
 
 #[test]
 fn a_surface_above_the_dew_point_stays_dry() {
-    let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+    let mut setup = ball([[Face::Periodic; 2]; 3], true, 0.5);
     setup.bodies[0].temperature = WARM - 3.0;
     let mut dew = open(&setup);
     advance(&mut dew, 2.0);
@@ -83,7 +51,7 @@ fn a_surface_above_the_dew_point_stays_dry() {
 
 #[test]
 fn published_ways_can_be_chosen() {
-    let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+    let mut setup = ball([[Face::Periodic; 2]; 3], true, 0.5);
     setup.settings.condensation = Condensation::Particle;
     let mut dew = open(&setup);
     advance(&mut dew, 1.0);
@@ -99,7 +67,7 @@ fn published_ways_can_be_chosen() {
 
 #[test]
 fn momentum_is_conserved_in_stirred_air() {
-    let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+    let mut setup = ball([[Face::Periodic; 2]; 3], true, 0.5);
     setup.bodies.clear();
     setup.settings.gravity = [0.0; 3];
     let mut dew = open(&setup);
@@ -134,7 +102,7 @@ fn nearest_pair(dew: &Dew, size: [f64; 3]) -> f64 {
 
 #[test]
 fn warm_air_rises() {
-    let mut setup = ball(true, [[Face::Wall; 2]; 3]);
+    let mut setup = ball([[Face::Wall; 2]; 3], true, 0.5);
     setup.bodies.clear();
     let middle = 0.5 * setup.room.high[0];
     let mut dew = Dew::new(&setup, |[x, ..]| [if x < middle { WARM + 5.0 } else { WARM }, vapour(WARM, 0.8)]).unwrap();
@@ -151,7 +119,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut dew = open(&ball(false, through_flow()));
+            let mut dew = open(&ball(through_flow(0.05, 0.9), false, 0.5));
             advance(&mut dew, 0.3);
             dew.save()
         })
@@ -161,7 +129,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn looking_and_stopping_do_not_change_the_air() {
-    let setup = ball(false, through_flow());
+    let setup = ball(through_flow(0.05, 0.9), false, 0.5);
     let mut straight = open(&setup);
     advance(&mut straight, 0.3);
     let mut looked_at = open(&setup);
@@ -179,7 +147,7 @@ fn looking_and_stopping_do_not_change_the_air() {
 
 /// Distance from a ball's surface of the air that comes deepest while all air is pushed past it, in spacings.
 fn deepest_in(walls: WallTreatment, until: f64) -> f64 {
-    let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+    let mut setup = ball([[Face::Periodic; 2]; 3], true, 0.5);
     let pose = Pose::new([6.39 * D, 4.0 * D, 6.0 * D], [0.0; 3]);
     let solid = Solid::of_shape(Shape::sphere(3.0 * D).unwrap(), pose);
     setup.bodies = vec![Body::sampled(solid.clone(), D, GLASS, COLD, true).unwrap()];

@@ -1,5 +1,8 @@
 //! Humid air on the GPU does what it does on the CPU.
 
+mod common;
+
+use common::{COLD, D, GLASS, WARM, advance, on_gpu, vapour};
 use corpuscle_dew::air::{Particle, Properties, Role, TemperatureCoefficients};
 use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
 use corpuscle_dew::solids::{Body, Material};
@@ -7,24 +10,16 @@ use corpuscle_dew::{
     Condensation, Dew, Face, Fan, Humidity, Inflow, LiveChange, LowUtility, Mean, Room, Settings, Setup, SourceChange,
     WallTreatment,
 };
-use corpuscle_gpu::{Gpu, require_gpu};
+use corpuscle_gpu::require_gpu;
 use corpuscle_model::{GpuModel, Model, ModelError};
-use corpuscle_scene::{KernelName, Scene, builtin};
+use corpuscle_scene::{KernelName, Scene};
 use corpuscle_solids::{Pose, Shape, Solid};
 use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-const D: f64 = 2e-3;
-const WARM: f64 = ZERO_CELSIUS + 25.0;
-const COLD: f64 = ZERO_CELSIUS + 5.0;
-const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
 const SIZE: [f64; 3] = [12.0 * D, 8.0 * D, 10.0 * D];
-
-fn vapour(temperature: f64, humidity: f64) -> f64 {
-    HumidAir::with_relative_humidity(temperature, 101_325.0, humidity).mass_fraction()
-}
 
 fn room(faces: [[Face; 2]; 3]) -> Setup {
     Setup {
@@ -61,20 +56,11 @@ fn nudged(setup: &Setup, nudge: f64) -> Dew {
     dew
 }
 
-fn on_gpu(mut dew: Dew, gpu: &Gpu) -> Dew {
-    dew.use_gpu(gpu.clone()).unwrap();
-    dew
-}
-
 /// A little more than a step, lest rounding take it for less.
 fn step(dew: &mut Dew, count: usize) {
     for _ in 0..count {
         dew.advance_to(dew.time() + 1.000_001 * dew.time_step(), &AtomicBool::new(false)).unwrap();
     }
-}
-
-fn go(dew: &mut Dew, time: f64) {
-    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
 }
 
 fn by_id(dew: &Dew) -> Vec<Particle> {
@@ -330,10 +316,10 @@ fn temperatures_held_change_as_on_the_cpu() {
     let [mut host, seldom, often] = [(); 3].map(|()| open());
     let [mut seldom, mut often] = [seldom, often].map(|dew| on_gpu(dew, &gpu));
     let time = 160.0 * step;
-    go(&mut host, time);
-    go(&mut seldom, time);
+    advance(&mut host, time);
+    advance(&mut seldom, time);
     for look in 1..=7 {
-        go(&mut often, time * f64::from(look) / 7.0);
+        advance(&mut often, time * f64::from(look) / 7.0);
     }
     assert!(bits(&seldom) == bits(&often) && seldom.steps() == host.steps());
     assert!(differences_of_solids(&host, &seldom)[0] < 1e-5, "{:?}", differences_of_solids(&host, &seldom));
@@ -367,7 +353,7 @@ fn solids_are_heated_and_cooled_as_on_the_cpu() {
         let [mut host, mut device] = [heated(factor), on_gpu(heated(factor), &gpu)];
         for (time, most) in [(0.01, 1e-5), (0.1, 1e-3), (0.15, 1.5e-3)] {
             for dew in [&mut host, &mut device] {
-                go(dew, time);
+                advance(dew, time);
                 if time == 0.1 {
                     for change in [
                         SourceChange::HeaterTimes { solid: 0, times: 3.0 },
@@ -478,7 +464,7 @@ fn air_of_low_utility_is_found_round_a_ball_and_taken_out() {
     assert!(idle(&host) > 100 && differ <= 2, "{differ} of {}", idle(&host));
     step(&mut host, 60);
     let time = host.time() + 0.5 * host.time_step();
-    go(&mut device, time);
+    advance(&mut device, time);
     let [out, on_gpu] = [&host, &device].map(|dew| before - dew.air().len());
     assert!(out > 20 && out.abs_diff(on_gpu) <= 2, "{out} and {on_gpu} of {before} taken out");
     for balance in device.ledger().balances {
@@ -520,7 +506,7 @@ fn totals_go_as_on_the_cpu() {
             let (mut host, mut device) = (stirred(&setup), on_gpu(stirred(&setup), &gpu));
             step(&mut host, 100);
             let time = host.time() + 0.5 * host.time_step();
-            go(&mut device, time);
+            advance(&mut device, time);
             assert_eq!(host.steps(), device.steps());
             let newest = |dew: &Dew| dew.air().iter().map(|particle| particle.id).max();
             assert_eq!(newest(&host), newest(&device), "{name}");
@@ -551,9 +537,9 @@ fn looking_more_often_changes_nothing() {
     let Some(gpu) = require_gpu("looks at the GPU") else { return };
     let setup = ball(through_flow(), false);
     let [mut seldom, mut often] = [(); 2].map(|()| on_gpu(stirred(&setup), &gpu));
-    go(&mut seldom, 0.15);
+    advance(&mut seldom, 0.15);
     for look in 1..=30 {
-        go(&mut often, 0.15 * f64::from(look) / 30.0);
+        advance(&mut often, 0.15 * f64::from(look) / 30.0);
         often.frame();
     }
     assert!(seldom.steps() > 70 && bits(&seldom) == bits(&often));
@@ -598,7 +584,7 @@ fn what_the_gpu_cannot_compute_is_refused_by_name() {
 fn a_lost_gpu_leaves_the_state_of_before() {
     let Some(gpu) = require_gpu("a GPU that is lost") else { return };
     let mut dew = on_gpu(built_in("dew/pane"), &gpu);
-    go(&mut dew, 0.05);
+    advance(&mut dew, 0.05);
     let saved = dew.save();
     gpu.device.destroy();
     let error = dew.advance_to(0.1, &AtomicBool::new(false)).unwrap_err();
@@ -620,11 +606,7 @@ fn air_that_cannot_go_on_breaks_down_with_an_error() {
 /// A built-in scene with drops that are soon seen; its seed is 1. In the pane's a layer of air that comes in stands in the side of the box to rounding after ten steps.
 fn built_in(name: &str) -> Dew {
     let changes = [("dew.drops.smallest_radius_m", "5e-6"), ("dew.drops.sites_per_m2", "1e8")];
-    let changes = changes.map(|(key, value)| (key.to_owned(), value.to_owned()));
-    let mut scene = Scene::parse(builtin(name).unwrap().text, name, &changes).unwrap();
-    scene.resolve_defaults();
-    let written = scene.dew().unwrap();
-    corpuscle_dew::open(written, 1, Path::new("")).unwrap()
+    common::built_in(name, &changes)
 }
 
 /// Drops as frames show them: number, mass, the largest, and where they are on average.
@@ -642,10 +624,10 @@ fn drops_beside_the_gpu_go_as_on_the_cpu() {
     for (name, time) in [("dew/pane", 0.1), ("dew/lens", 0.1)] {
         let [mut host, seldom, often] = [(); 3].map(|()| built_in(name));
         let [mut seldom, mut often] = [seldom, often].map(|dew| on_gpu(dew, &gpu));
-        go(&mut host, time);
-        go(&mut seldom, time);
+        advance(&mut host, time);
+        advance(&mut seldom, time);
         for look in 1..=7 {
-            go(&mut often, time * f64::from(look) / 7.0);
+            advance(&mut often, time * f64::from(look) / 7.0);
         }
         assert!(drops(&host)[0] > 100.0 && host.steps() == seldom.steps(), "{name}");
         assert!((0..6).all(|k| near(drops(&host)[k], drops(&seldom)[k], 1e-4)), "{name}");

@@ -1,19 +1,11 @@
 //! Gauges of air on the GPU show what they show where the air is brought back for them.
 
-use corpuscle_dew::Dew;
-use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::{AdvanceObserver, GpuModel, Model, ModelProgress};
-use corpuscle_scene::{Scene, builtin};
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
+mod common;
 
-fn on_gpu(name: &str, gpu: &Gpu) -> Dew {
-    let mut scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
-    scene.resolve_defaults();
-    let mut dew = corpuscle_dew::open(scene.dew().unwrap(), 1, Path::new("")).unwrap();
-    dew.use_gpu(gpu.clone()).unwrap();
-    dew
-}
+use common::{built_in, on_gpu};
+use corpuscle_gpu::{Gpu, require_gpu};
+use corpuscle_model::{AdvanceObserver, Model, ModelProgress};
+use std::sync::atomic::AtomicBool;
 
 /// Takes rows at multiples of a period; air is called back once, after so many.
 struct Notes {
@@ -39,7 +31,7 @@ impl AdvanceObserver for Notes {
 }
 
 fn compare(name: &str, gpu: &Gpu, period: f64, rows: usize) {
-    let [mut measured, mut plain] = [(); 2].map(|()| on_gpu(name, gpu));
+    let [mut measured, mut plain] = [(); 2].map(|()| on_gpu(built_in(name, &[]), gpu));
     let until = period * rows as f64;
     let mut notes = Notes { period, call_back_at: rows / 2, rows: Vec::new() };
     let stop = AtomicBool::new(false);

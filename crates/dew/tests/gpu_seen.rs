@@ -1,24 +1,12 @@
 //! What is drawn on the GPU is what the frame has, and nothing comes back for it.
 
-use corpuscle_dew::Dew;
+mod common;
+
+use common::{built_in, on_gpu};
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
 use corpuscle_gpu::{DeviceParticles, Gpu, require_gpu};
 use corpuscle_model::{AdvanceObserver, Frame, Glance, GpuModel, Model, ModelProgress, ParticleSet, Values};
-use corpuscle_scene::{Scene, builtin};
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-fn open(name: &str) -> Dew {
-    let mut scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
-    scene.resolve_defaults();
-    corpuscle_dew::open(scene.dew().unwrap(), 1, Path::new("")).unwrap()
-}
-
-fn on_gpu(name: &str, gpu: &Gpu) -> Dew {
-    let mut dew = open(name);
-    dew.use_gpu(gpu.clone()).unwrap();
-    dew
-}
 
 fn set<'a>(frame: &'a Frame, name: &str) -> &'a ParticleSet {
     frame.sets.iter().find(|set| set.name == name).unwrap()
@@ -44,7 +32,7 @@ fn compare(seen: &DeviceParticles, frame: &Frame, gpu: &Gpu) {
 #[test]
 fn air_on_the_gpu_is_that_of_the_frame() {
     let Some(gpu) = require_gpu("air drawn where it lies") else { return };
-    let mut dew = on_gpu("dew/three-boundaries", &gpu);
+    let mut dew = on_gpu(built_in("dew/three-boundaries", &[]), &gpu);
     for time in [0.0, 0.000_77, 0.0015] {
         dew.advance_to(time, &AtomicBool::new(false)).unwrap();
         compare(&dew.particles_on_gpu().unwrap().unwrap(), &dew.frame(), &gpu);
@@ -77,7 +65,7 @@ impl AdvanceObserver for Told {
 #[test]
 fn who_watches_sees_the_drops_and_the_air_and_changes_neither() {
     let Some(gpu) = require_gpu("dew that is watched on the GPU") else { return };
-    let [mut watched, mut plain] = [(); 2].map(|()| on_gpu("dew/pane", &gpu));
+    let [mut watched, mut plain] = [(); 2].map(|()| on_gpu(built_in("dew/pane", &[]), &gpu));
     let (stop, mut told) = (AtomicBool::new(false), Told::default());
     let mut looks = Vec::new();
     let mut show = |Glance { frame, on_device: air }: Glance| {
@@ -117,7 +105,7 @@ fn who_watches_sees_the_drops_and_the_air_and_changes_neither() {
 
 #[test]
 fn without_a_gpu_nobody_is_shown_any_air() {
-    let mut dew = open("dew/pane");
+    let mut dew = built_in("dew/pane", &[]);
     assert!(dew.gpu().is_none() && dew.particles_on_gpu().unwrap().is_none());
     let mut show = |_: Glance| panic!("there is no GPU");
     dew.advance_shown(0.005, &AtomicBool::new(false), &mut (), (0.0, true), &mut show).unwrap();

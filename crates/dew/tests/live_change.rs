@@ -1,11 +1,13 @@
 //! Live changes of dew: what is changed while it runs.
 
+mod common;
+
+use common::advance;
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
 use corpuscle_dew::{Dew, LiveChange, SourceChange, open};
 use corpuscle_model::Model;
 use corpuscle_scene::Scene;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// Warm damp air flows past a cold pane.
 const PANE: &str = r#"
@@ -47,10 +49,6 @@ fn scene(text: &str) -> Dew {
     open(dew, 1, Path::new(".")).unwrap()
 }
 
-fn go(dew: &mut Dew, time: f64) {
-    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
-}
-
 /// Both ledgers balance; gives inflow and outflow of energy, J.
 fn energy(dew: &Dew) -> [f64; 2] {
     for balance in dew.ledger().balances {
@@ -62,9 +60,9 @@ fn energy(dew: &Dew) -> [f64; 2] {
 
 fn after(text: &str, changes: &[LiveChange], time: f64) -> Dew {
     let mut dew = scene(text);
-    go(&mut dew, 0.2);
+    advance(&mut dew, 0.2);
     changes.iter().for_each(|change| change.change(&mut dew).unwrap());
-    go(&mut dew, time);
+    advance(&mut dew, time);
     energy(&dew);
     dew
 }
@@ -85,18 +83,18 @@ fn a_pane_that_is_cooled_live_fogs() {
 fn a_pane_that_is_free_is_given_its_heat() {
     let text = closed();
     let mut dew = scene(&text);
-    go(&mut dew, 0.2);
+    advance(&mut dew, 0.2);
     let before = energy(&dew);
     LiveChange::SolidTemperature { solid: 0, celsius: 60.0 }.change(&mut dew).unwrap();
     let given = energy(&dew)[0] - before[0];
     // Half of the box is in the room: 3 mm x 12 mm x 18 mm of glass, and no more of it than its particles fill.
     let glass: f64 = (0..dew.solids().particles.len()).map(|i| dew.solids().heat_capacity(i)).sum();
     assert!((given / (35.0 * glass) - 1.0).abs() < 0.01, "{given} {}", 35.0 * glass);
-    go(&mut dew, 0.5);
+    advance(&mut dew, 0.5);
     LiveChange::SolidTemperature { solid: 0, celsius: 0.0 }.change(&mut dew).unwrap();
     let taken = energy(&dew)[1];
     assert!(taken > 1.5 * given, "{taken} {given}");
-    go(&mut dew, 0.8);
+    advance(&mut dew, 0.8);
     energy(&dew);
 }
 
@@ -171,7 +169,7 @@ fn accelerated_time_condenses_faster() {
 #[test]
 fn dew_that_was_changed_goes_on_from_its_checkpoint_to_the_same_bits() {
     let mut dew = scene(PANE);
-    go(&mut dew, 0.2);
+    advance(&mut dew, 0.2);
     let untouched = dew.save();
     for change in [
         LiveChange::SolidTemperature { solid: 0, celsius: 5.0 },
@@ -183,18 +181,18 @@ fn dew_that_was_changed_goes_on_from_its_checkpoint_to_the_same_bits() {
     ] {
         change.change(&mut dew).unwrap();
     }
-    go(&mut dew, 0.3);
+    advance(&mut dew, 0.3);
     let mut again = scene(PANE);
     again.restore(&dew.save()).unwrap();
-    go(&mut dew, 0.5);
-    go(&mut again, 0.5);
+    advance(&mut dew, 0.5);
+    advance(&mut again, 0.5);
     assert!(dew.save() == again.save());
     // And back to before anything was changed.
     dew.restore(&untouched).unwrap();
     let mut left = scene(PANE);
     left.restore(&untouched).unwrap();
-    go(&mut dew, 0.4);
-    go(&mut left, 0.4);
+    advance(&mut dew, 0.4);
+    advance(&mut left, 0.4);
     assert!(dew.save() == left.save());
 }
 
@@ -234,14 +232,14 @@ fn heated() -> String {
 fn supplied(changes: &[SourceChange]) -> [f64; 3] {
     let text = heated().replace("position_m = [0.0,", "position_m = [0.003,");
     let mut dew = scene(&text);
-    go(&mut dew, 0.2);
+    advance(&mut dew, 0.2);
     let before = dew.heat_supplied(0);
     changes.iter().for_each(|&change| LiveChange::Source(change).change(&mut dew).unwrap());
-    go(&mut dew, 0.3);
+    advance(&mut dew, 0.3);
     let mut resumed = scene(&text);
     resumed.restore(&dew.save()).unwrap();
-    go(&mut dew, 0.4);
-    go(&mut resumed, 0.4);
+    advance(&mut dew, 0.4);
+    advance(&mut resumed, 0.4);
     energy(&dew);
     assert_eq!(dew.save(), resumed.save());
     let after = dew.heat_supplied(0);

@@ -1,10 +1,12 @@
 //! From a scene to drops: water and energy are kept, what is saved goes on to the same bits, and what cannot be is refused.
 
+mod common;
+
+use common::{advance, gauge};
 use corpuscle_dew::{Dew, open};
 use corpuscle_model::{Model, Values};
 use corpuscle_scene::Scene;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// A small pane at 5 °C over which humid air flows down, time going 100 times faster.
 const PANE: &str = r#"
@@ -38,15 +40,6 @@ fn dew(text: &str) -> Dew {
 
 fn refused(text: &str) -> String {
     open(&parsed(text), 1, Path::new("")).err().expect("refused").to_string()
-}
-
-fn advance(dew: &mut Dew, time: f64) {
-    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
-}
-
-fn gauge(dew: &Dew, header: &str) -> f64 {
-    let at = dew.gauge_columns().iter().position(|column| column.header() == header).expect(header);
-    dew.gauge_row()[at]
 }
 
 #[test]

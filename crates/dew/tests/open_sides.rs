@@ -1,19 +1,13 @@
 //! Air that comes and goes: open sides, slanting wind, fans.
 
+mod common;
+
+use common::{D, GLASS, WARM, advance, vapour};
 use corpuscle_dew::air::{Particle, Properties, Role};
-use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{Dew, Face, Fan, Inflow, Room, Scatter, Settings, Setup};
 use corpuscle_model::Model;
 use corpuscle_solids::{Pose, Shape, Solid};
-use std::sync::atomic::AtomicBool;
-
-const D: f64 = 2e-3;
-const WARM: f64 = ZERO_CELSIUS + 25.0;
-
-fn advance(dew: &mut Dew, time: f64) {
-    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
-}
 
 fn inside(dew: &Dew) -> impl Iterator<Item = &Particle> {
     dew.air().iter().filter(|particle| particle.role == Role::Inside)
@@ -220,12 +214,11 @@ fn cold_ball() -> Setup {
     let size = [12.0 * D, 12.0 * D, 12.0 * D];
     let shape = Shape::sphere(3.0 * D).unwrap();
     let solid = Solid::of_shape(shape, Pose::new(size.map(|side| 0.5 * side), [0.0; 3]));
-    let glass = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
-    let humid = HumidAir::with_relative_humidity(WARM, 101_325.0, 0.8).mass_fraction();
+    let humid = vapour(WARM, 0.8);
     Setup {
         settings: Settings::new(D, WARM, humid),
         air: Properties::at_room_temperature(1.0),
-        bodies: vec![Body::sampled(solid, D, glass, WARM - 20.0, true).unwrap()],
+        bodies: vec![Body::sampled(solid, D, GLASS, WARM - 20.0, true).unwrap()],
         ..setup(size, [[Face::Open; 2], [Face::Open; 2], [Face::Wall, Face::Open]], 1.0)
     }
 }

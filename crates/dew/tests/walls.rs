@@ -1,11 +1,13 @@
 //! Layers of the wall between a solid and the air outside.
 
+mod common;
+
+use common::{advance, gauge};
 use corpuscle_dew::Dew;
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::Scene;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// A pane in a side of a box of air as warm as it, with layers behind it.
 fn made(layers: &str) -> Result<Dew, ModelError> {
@@ -18,15 +20,6 @@ fn made(layers: &str) -> Result<Dew, ModelError> {
     );
     let scene = Scene::parse(&text, "test", &[]).unwrap();
     corpuscle_dew::open(scene.dew().unwrap(), 1, Path::new(""))
-}
-
-fn go(dew: &mut Dew, time: f64) {
-    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
-}
-
-fn gauge(dew: &Dew, header: &str) -> f64 {
-    let at = dew.gauge_columns().iter().position(|column| column.header() == header).unwrap();
-    dew.gauge_row()[at]
 }
 
 const AREA: f64 = 0.012 * 0.012;
@@ -47,7 +40,7 @@ fn heat_goes_through_a_wall_as_if_it_had_done_so_for_long() {
     let flux = 20.0 / resistance;
     let coat = flux * (0.005 / 0.04 + 1.0 / 25.0) + ZERO_CELSIUS;
     assert!((gauge(&dew, "pane.outside.2.mean_temperature_K") - coat).abs() < 1e-9);
-    go(&mut dew, 0.2);
+    advance(&mut dew, 0.2);
     let lost = -gauge(&dew, "pane.heat_from_outside_J") / (AREA * dew.stepped_until());
     assert!((lost / flux - 1.0).abs() < 1e-3, "{lost} W/m2 for {flux}");
     assert!((gauge(&dew, "pane.outside.2.mean_temperature_K") - coat).abs() < 1e-3);
@@ -58,7 +51,7 @@ fn heat_goes_through_a_wall_as_if_it_had_done_so_for_long() {
 fn a_wall_of_gaps_resists_as_one_of_a_layer_that_holds_next_to_no_heat() {
     let lost = |layers: &str| {
         let mut dew = made(layers).unwrap();
-        go(&mut dew, 0.3);
+        advance(&mut dew, 0.3);
         -gauge(&dew, "pane.heat_from_outside_J")
     };
     let [none, gap] = [lost(""), lost("{ resistance_m2_k_per_w = 0.1 }, { resistance_m2_k_per_w = 0.07 }")];
@@ -73,7 +66,7 @@ fn a_foil_does_not_shorten_the_step() {
     let foil = "{ material = \"aluminium\", thickness_m = 2e-5 }, ";
     let steps = |layers: &str| {
         let mut dew = made(layers).unwrap();
-        go(&mut dew, 0.2);
+        advance(&mut dew, 0.2);
         dew.steps()
     };
     assert_eq!(steps(&format!("{foil}{DOUBLE}, {foil}")), steps(DOUBLE));
@@ -82,12 +75,12 @@ fn a_foil_does_not_shorten_the_step() {
 #[test]
 fn a_run_with_a_wall_goes_on_from_its_checkpoint() {
     let mut whole = made(DOUBLE).unwrap();
-    go(&mut whole, 0.1);
+    advance(&mut whole, 0.1);
     let saved = whole.save();
-    go(&mut whole, 0.2);
+    advance(&mut whole, 0.2);
     let mut resumed = made(DOUBLE).unwrap();
     resumed.restore(&saved).unwrap();
-    go(&mut resumed, 0.2);
+    advance(&mut resumed, 0.2);
     assert_eq!(whole.save(), resumed.save());
     let other = made("").unwrap().restore(&saved).unwrap_err().to_string();
     assert!(other.contains("another scene"), "{other}");
@@ -108,7 +101,7 @@ fn water_on_a_pane_that_has_become_colder_than_ice_is_told() {
             dew.warnings().iter().any(|warning| warning.contains("\"pane\"") && warning.contains("below 0 °C"))
         };
         assert!(!is_told(&dew), "{:?}", dew.warnings());
-        go(&mut dew, 0.5);
+        advance(&mut dew, 0.5);
         is_told(&dew)
     };
     assert!(frosts(-30.0) && !frosts(3.0));
@@ -124,7 +117,7 @@ fn a_wall_of_no_area_does_nothing() {
                 outside = { side = \"z_min\", temperature_c = 0, h_w_per_m2_k = 25, layers = [{ material = \"glass\", thickness_m = 0.004 }] }\n";
     let scene = Scene::parse(text, "test", &[]).unwrap();
     let mut dew = corpuscle_dew::open(scene.dew().unwrap(), 1, Path::new("")).unwrap();
-    go(&mut dew, 0.05);
+    advance(&mut dew, 0.05);
     assert_eq!(dew.heat_supplied(0), [0.0; 3]);
     assert_eq!(dew.gauge_columns().len(), dew.gauge_row().len());
 }
