@@ -82,7 +82,7 @@ impl Contact {
         self.count.resize(particles, 0);
         let particle = |pair: &Pair| {
             let entry = arrangement.entries[pair.other as usize];
-            (!entry.image).then_some(entry.particle as usize)
+            (!entry.is_ghost_particle).then_some(entry.particle as usize)
         };
         let mut sum = 0;
         for pair in self.blocks.iter().flat_map(|block| &block.pairs) {

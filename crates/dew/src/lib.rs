@@ -37,5 +37,5 @@ mod wetting;
 pub use dew::{Dew, LiveChange, Scatter, Setup, SourceChange};
 pub use fan::Fan;
 pub use open::{open, open_on};
-pub use room::{Face, Image, Inflow, Room};
+pub use room::{Face, GhostParticle, Inflow, Room};
 pub use settings::{Condensation, Conductor, Humidity, LowUtility, Mean, Settings, WallTreatment};

@@ -46,9 +46,9 @@ pub struct Room {
     pub faces: [[Face; 2]; 3],
 }
 
-/// An image of a place beyond faces.
+/// A ghost particle: what stands beyond faces for a particle in the room, or for a place there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Image {
+pub struct GhostParticle {
     /// Where it stands, m.
     pub position: [f64; 3],
     /// The axes along which it is mirrored: what moves along them moves the other way.
@@ -118,19 +118,25 @@ impl Room {
         (0..3).all(|axis| self.low[axis] <= place[axis] && place[axis] < self.high[axis])
     }
 
-    /// Calls `found` with every image of a place that is within `reach` of the room, beyond periodic faces and walls.
-    pub fn images(&self, place: [f64; 3], reach: f64, found: impl FnMut(Image)) {
-        self.images_beyond(place, &[[None; 2]; 3], reach, found);
+    /// Calls `found` with every ghost particle of a place that is within `reach` of the room, beyond periodic faces and walls.
+    pub fn ghost_particles(&self, place: [f64; 3], reach: f64, found: impl FnMut(GhostParticle)) {
+        self.ghost_particles_beyond(place, &[[None; 2]; 3], reach, found);
     }
 
     /// The same, and mirror images within a reach of their own beyond those of the other faces, by axis and end, for which `mirrors` has one.
-    pub fn images_beyond(&self, place: [f64; 3], mirrors: &Mirrors, reach: f64, mut found: impl FnMut(Image)) {
+    pub fn ghost_particles_beyond(
+        &self,
+        place: [f64; 3],
+        mirrors: &Mirrors,
+        reach: f64,
+        mut found: impl FnMut(GhostParticle),
+    ) {
         let farthest = mirrors.iter().flatten().flatten().copied().fold(reach, f64::max);
         let near = |axis: usize| place[axis] - self.low[axis] < farthest || self.high[axis] - place[axis] < farthest;
         if !(0..3).any(near) {
             return;
         }
-        // Along each axis the place itself comes first, then its images.
+        // Along each axis the place itself comes first, then its ghost particles.
         let mut along = [[(0.0, false, false); 3]; 3];
         let mut count = [1; 3];
         for axis in 0..3 {
@@ -138,14 +144,14 @@ impl Room {
             along[axis][0] = (at, false, false);
             for side in 0..2 {
                 let mirrored = |beyond: bool| (2.0 * [low, high][side] - at, true, beyond);
-                let (image, reach) = match (self.faces[axis][side], mirrors[axis][side]) {
+                let (ghost, reach) = match (self.faces[axis][side], mirrors[axis][side]) {
                     (Face::Periodic, _) => ((at + [low - high, high - low][side], false, false), reach),
                     (Face::Wall, _) => (mirrored(false), reach),
                     (Face::Inlet(_) | Face::Outlet | Face::Open, Some(reach)) => (mirrored(true), reach),
                     (Face::Inlet(_) | Face::Outlet | Face::Open, None) => continue,
                 };
-                if image.0 > low - reach && image.0 < high + reach {
-                    along[axis][count[axis]] = image;
+                if ghost.0 > low - reach && ghost.0 < high + reach {
+                    along[axis][count[axis]] = ghost;
                     count[axis] += 1;
                 }
             }
@@ -155,7 +161,7 @@ impl Room {
             for &y in &along[1][..count[1]] {
                 for &x in &along[0][..count[0]] {
                     if !std::mem::take(&mut itself) {
-                        found(Image {
+                        found(GhostParticle {
                             position: [x.0, y.0, z.0],
                             mirrored: [x.1, y.1, z.1],
                             beyond: x.2 || y.2 || z.2,
@@ -252,14 +258,18 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_has_seven_images() {
+    fn a_corner_has_seven_ghost_particles() {
         let walls = room([[Face::Wall; 2]; 3]);
-        let mut images = Vec::new();
-        walls.images([0.1, 0.1, 2.9], 0.2, |image| images.push(image));
-        assert_eq!(images.len(), 7);
-        assert!(images.contains(&Image { position: [-0.1, -0.1, 0.1 + 3.0], mirrored: [true; 3], beyond: false }));
+        let mut ghosts = Vec::new();
+        walls.ghost_particles([0.1, 0.1, 2.9], 0.2, |ghost| ghosts.push(ghost));
+        assert_eq!(ghosts.len(), 7);
+        assert!(ghosts.contains(&GhostParticle {
+            position: [-0.1, -0.1, 0.1 + 3.0],
+            mirrored: [true; 3],
+            beyond: false
+        }));
         let mut one = Vec::new();
-        room([[Face::Periodic; 2]; 3]).images([0.5, 1.9, 1.0], 0.2, |image| one.push(image.position));
+        room([[Face::Periodic; 2]; 3]).ghost_particles([0.5, 1.9, 1.0], 0.2, |ghost| one.push(ghost.position));
         assert_eq!(one.len(), 1);
         assert!((one[0][1] + 0.1).abs() < 1e-12);
     }

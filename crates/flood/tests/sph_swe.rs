@@ -82,7 +82,7 @@ fn apart(a: &Particle, b: &Particle) -> f64 {
 fn each_neighbour_counts_with_its_own_mass() {
     let mut flood = open(UNEVEN, &[], None);
     go(&mut flood, 5.0);
-    // Beyond the edges there are images.
+    // Beyond the edges there are ghost particles.
     let inside =
         |particle: &Particle| [particle.x, particle.y].iter().all(|at| (particle.h..SIDE - particle.h).contains(at));
     let some: Vec<_> = within(&flood, SIDE).into_iter().filter(inside).collect();

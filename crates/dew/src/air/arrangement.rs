@@ -1,4 +1,4 @@
-//! Particles in the order of their cells, together with their images beyond the faces of the room.
+//! Particles in the order of their cells, together with their ghost particles beyond the faces of the room.
 //!
 //! Cells are the same for any distribution of the air over processes, and within a cell particles stand by their identities: so neighbours have the same order
 //! everywhere.
@@ -13,18 +13,18 @@ use rayon::prelude::*;
 /// What stands at a place of the arrangement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
-    /// The particle, as arranged: itself, or what it is an image of. Those of the halo are counted after the own.
+    /// The particle, as arranged: itself, or what it is a ghost particle of. Those of the halo are counted after the own.
     pub particle: u32,
-    /// Whether it is an image, or of the halo: its neighbours are not searched.
-    pub image: bool,
-    /// The axes along which the image is mirrored.
+    /// Whether it is a ghost particle, or of the halo: its neighbours are not searched.
+    pub is_ghost_particle: bool,
+    /// The axes along which the ghost particle is mirrored.
     pub mirrored: [bool; 3],
 }
 
-/// Particles and images, sorted into cells, with their neighbour lists.
+/// Particles and ghost particles, sorted into cells, with their neighbour lists.
 #[derive(Debug, Default)]
 pub struct Arrangement {
-    /// Cells over particles and images.
+    /// Cells over particles and ghost particles.
     pub cells: Cells<3>,
     /// Neighbour lists of the particles.
     pub lists: NeighbourLists,
@@ -40,7 +40,7 @@ pub struct Arrangement {
     pub z: Vec<f64>,
     unsorted: [Vec<f64>; 3],
     ids: Vec<u64>,
-    images: Vec<Entry>,
+    ghosts: Vec<Entry>,
     /// Number of each particle after the last sort, by that before.
     pub new_number: Vec<u32>,
     /// The part of the room that the own particles are in.
@@ -68,7 +68,7 @@ impl Part {
     }
 }
 
-/// The box that holds a room and all particles and images beyond its faces: its lowest and its highest corner, m.
+/// The box that holds a room and all particles and ghost particles beyond its faces: its lowest and its highest corner, m.
 fn with_what_is_beyond(room: &Room, reach: f64) -> [[f64; 3]; 2] {
     let margin = |face: &Face| if face.is_passed() { (BEYOND + 1.0) * reach } else { reach };
     let end = |side: usize, sign: f64| {
@@ -87,7 +87,7 @@ pub(crate) fn order_of(particle: &Particle, room: &Room, reach: f64) -> ([u32; 3
 }
 
 impl Arrangement {
-    /// Sorts the particles and those of the halo, and makes images of those within `reach` of a face. The particles are in a `part` of the room.
+    /// Sorts the particles and those of the halo, and makes ghost particles of those within `reach` of a face. The particles are in a `part` of the room.
     pub fn arrange(
         &mut self,
         particles: &mut Vec<Particle>,
@@ -101,7 +101,7 @@ impl Arrangement {
             particles.par_iter().with_min_len(FEWEST).map(|p| p.position[axis]).collect_into_vec(values);
         }
         particles.par_iter().with_min_len(FEWEST).map(|particle| particle.id).collect_into_vec(&mut self.ids);
-        self.add_images(particles, halo, room, reach);
+        self.add_ghost_particles(particles, halo, room, reach);
         self.part = part;
         let [x, y, z] = &self.unsorted;
         let [low, high] = with_what_is_beyond(room, reach);
@@ -123,33 +123,37 @@ impl Arrangement {
             }
         }
         std::mem::swap(particles, &mut self.spare);
-        let (images, new_number) = (&self.images, &self.new_number);
+        let (ghosts, new_number) = (&self.ghosts, &self.new_number);
         let entry = |&from: &u32| match (from as usize).checked_sub(count) {
-            None => Entry { particle: new_number[from as usize], image: false, mirrored: [false; 3] },
-            Some(image) => {
-                let image = images[image];
-                let particle = new_number.get(image.particle as usize).copied().unwrap_or(image.particle);
-                Entry { particle, ..image }
+            None => Entry { particle: new_number[from as usize], is_ghost_particle: false, mirrored: [false; 3] },
+            Some(ghost) => {
+                let ghost = ghosts[ghost];
+                let particle = new_number.get(ghost.particle as usize).copied().unwrap_or(ghost.particle);
+                Entry { particle, ..ghost }
             }
         };
         order.par_iter().with_min_len(FEWEST).map(entry).collect_into_vec(&mut self.entries);
     }
 
-    /// Adds images of particles, and the halo with its images.
-    fn add_images(&mut self, particles: &[Particle], halo: &[HaloParticle], room: &Room, reach: f64) {
-        self.images.clear();
-        let Self { images, unsorted, ids, .. } = self;
+    /// Adds ghost particles of particles, and the halo with its ghost particles.
+    fn add_ghost_particles(&mut self, particles: &[Particle], halo: &[HaloParticle], room: &Room, reach: f64) {
+        self.ghosts.clear();
+        let Self { ghosts, unsorted, ids, .. } = self;
         let mut add = |number: usize, id: u64, position: [f64; 3], mirrored: [bool; 3]| {
-            images.push(Entry { particle: number as u32, image: true, mirrored });
+            ghosts.push(Entry { particle: number as u32, is_ghost_particle: true, mirrored });
             unsorted.iter_mut().zip(position).for_each(|(values, at)| values.push(at));
             ids.push(id);
         };
         for (number, particle) in particles.iter().enumerate() {
-            room.images(particle.position, reach, |image| add(number, particle.id, image.position, image.mirrored));
+            room.ghost_particles(particle.position, reach, |ghost| {
+                add(number, particle.id, ghost.position, ghost.mirrored)
+            });
         }
         for (number, particle) in (particles.len()..).zip(halo) {
             add(number, particle.id, particle.position, [false; 3]);
-            room.images(particle.position, reach, |image| add(number, particle.id, image.position, image.mirrored));
+            room.ghost_particles(particle.position, reach, |ghost| {
+                add(number, particle.id, ghost.position, ghost.mirrored)
+            });
         }
     }
 

@@ -24,7 +24,7 @@ struct Filling<'a> {
 }
 
 impl Arrangement {
-    /// Finds the neighbours of all particles and sums over them; the sums of images stay as they are.
+    /// Finds the neighbours of all particles and sums over them; the sums of ghost particles stay as they are.
     pub fn search(&mut self, scale: &Scale, sums: &mut Vec<Sums>) {
         sums.resize(self.entries.len(), Sums::default());
         let Self { cells, lists, entries, x, y, z, .. } = self;
@@ -54,7 +54,7 @@ fn normalise_block<S: Simd>(simd: S, sums: &[Sums], places: &[u32], tensors: &mu
 
 impl PairSum<Sums> for Filling<'_> {
     fn requires(&self, particle: usize) -> bool {
-        !self.entries[particle].image
+        !self.entries[particle].is_ghost_particle
     }
 
     #[inline(always)]

@@ -1,12 +1,12 @@
 // Neighbour search: cells to search, and ghost particles beyond faces.
 //
 // Ghost particles are not stored as on the CPU: near a face the search is repeated from the mirrored position, and what it finds is
-// mirrored. So each pass loops over `Mirror`s, the first of which is the identity. Twin of `Room::images`.
+// mirrored. So each pass loops over `Mirror`s, the first of which is the identity. Twin of `Room::ghost_particles`.
 #import dew_particles
 #import smoothing_kernel
 
 struct Mirror {
-    // The image of a place p stands at sign * p + shift.
+    // The ghost particle of a place p stands at sign * p + shift.
     sign: vec3f,
     shift: vec3f,
 }

@@ -91,7 +91,7 @@ struct Given {
     warming: f32,
     moistening: f32,
     stiffness: f32,
-    // Warming and moistening by images beyond sides that air passes.
+    // Warming and moistening by ghost particles beyond sides that air passes.
     from_beyond: vec2f,
 }
 
@@ -105,7 +105,7 @@ fn give(given: ptr<function, Given>, site: Site, own: Column, away: vec3f, q: f3
     let rates = vec2f((released - flux.to_air * flux.difference) / capacity, -water / parameters.mass);
     (*given).warming += rates.x;
     (*given).moistening += rates.y;
-    (*given).from_beyond += select(vec2f(0.0), rates, (site.flags & IMAGE_BEYOND) != 0u);
+    (*given).from_beyond += select(vec2f(0.0), rates, (site.flags & GHOST_PARTICLE_BEYOND) != 0u);
     (*given).stiffness += flux.to_air / capacity;
 }
 
@@ -201,7 +201,7 @@ struct Kicked {
 fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Kicked {
     var rates = air;
     let given = of_solids(own, &rates);
-    // What passes between air and images beyond is not of the solids.
+    // What passes between air and ghost particles beyond is not of the solids.
     var diffused = given.from_beyond - vec2f(given.warming, given.moistening);
     var fogged = 0.0;
     (*particle).deposit = 0.0;

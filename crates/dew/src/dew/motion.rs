@@ -248,7 +248,7 @@ fn set_densities(
     });
 }
 
-/// Fills the columns of particles, of the halo, and of their images; `tensors` are those of the particles, then of the halo.
+/// Fills the columns of particles, of the halo, and of their ghost particles; `tensors` are those of the particles, then of the halo.
 fn fill_columns(
     arrangement: &Arrangement,
     tensors: &[Tensor],

@@ -54,7 +54,7 @@ impl Dew {
         stiff.resize(self.contact.near.len(), 0.0);
         stiff.extend_from_slice(&self.conductances);
         let (of_air, of_solids) = stiff.split_at_mut(self.contact.near.len());
-        let real = self.contact.sites.iter().zip(&*to_solids).filter(|(site, _)| !site.image);
+        let real = self.contact.sites.iter().zip(&*to_solids).filter(|(site, _)| !site.is_ghost_particle);
         for (site, given) in real.clone() {
             let particle = site.particle as usize;
             share_of[particle] = given.share;
@@ -107,9 +107,9 @@ impl Dew {
     }
 
     /// Books what diffuses across open faces. Between particles in the room all cancels, so what they gain together has come
-    /// from beyond; what solids give to air beyond has left, and what air in the room gets from images of solids beyond has come from there.
+    /// from beyond; what solids give to air beyond has left, and what air in the room gets from ghost particles of solids beyond has come from there.
     fn book_open_faces(&mut self, step: f64, to_air: &[ToAir]) {
-        // Even where no air is beyond, images of solids may be.
+        // Even where no air is beyond, ghost particles of solids may be.
         if !self.room.faces.iter().flatten().any(Face::is_passed) {
             return;
         }

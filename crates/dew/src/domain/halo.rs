@@ -61,7 +61,7 @@ pub(super) struct Distribution<'a> {
 }
 
 impl Halo {
-    /// Sends the own air to the processes that have air within its `reach`, m, or within that of its images, and takes theirs. Velocities are taken `ahead` s on.
+    /// Sends the own air to the processes that have air within its `reach`, m, or within that of its ghost particles, and takes theirs. Velocities are taken `ahead` s on.
     pub(super) fn fill(
         &mut self,
         link: &dyn Link,
@@ -88,7 +88,7 @@ impl Halo {
                 }
             };
             send_to_those_near(particle.position);
-            room.images(particle.position, reach, |image| send_to_those_near(image.position));
+            room.ghost_particles(particle.position, reach, |ghost| send_to_those_near(ghost.position));
         }
         let copies = |(process, numbers): &(usize, Vec<u32>)| {
             let copy = |number: &u32| HaloParticle::new(&air[*number as usize], ahead);

@@ -23,7 +23,7 @@ impl Domain {
     /// Completes what sites get from the air, and the heat that is conducted to the particles of solids, W, by what other processes have found.
     pub fn complete(&self, sites: &[Site], given: &mut [ToSolid], heat: &mut [f64]) {
         let mut own = heat[self.own_nodes(heat.len())].to_vec();
-        let of_own = given.iter().zip(sites).filter(|(_, site)| !site.image && self.owns(site.position));
+        let of_own = given.iter().zip(sites).filter(|(_, site)| !site.is_ghost_particle && self.owns(site.position));
         own.extend(of_own.flat_map(|(given, _)| [given.heat, given.water, given.share, given.conductance]));
         let all = self.link.all_gather(bytemuck::cast_slice(&own));
         let all: Vec<Vec<f64>> = all.iter().map(|bytes| from_bytes(bytes)).collect();
@@ -36,7 +36,7 @@ impl Domain {
             .enumerate()
             .map(|(process, theirs)| theirs[self.nodes_of(process, heat.len()).len()..].as_chunks::<NUMBERS>().0.iter())
             .collect();
-        for (given, site) in given.iter_mut().zip(sites).filter(|(_, site)| !site.image) {
+        for (given, site) in given.iter_mut().zip(sites).filter(|(_, site)| !site.is_ghost_particle) {
             if let Some([heat, water, share, conductance]) = rest[self.owner(site.position)].next().copied() {
                 *given = ToSolid { heat, water, share, conductance };
             }

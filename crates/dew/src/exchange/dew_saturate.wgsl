@@ -30,7 +30,7 @@ fn weights_near(place: vec3f) -> vec2f {
             let row = row_of(y, z);
             let end = site_start[row + across.y + 1u];
             for (var k = site_start[row + across.x]; k < end; k++) {
-                if (sites[k].flags & (BOUNDARY | IMAGE_BEYOND)) == BOUNDARY {
+                if (sites[k].flags & (BOUNDARY | GHOST_PARTICLE_BEYOND)) == BOUNDARY {
                     let away = (place - sites[k].place) * parameters.per_h;
                     let weight = sites[k].volume * value_shape(dot(away, away));
                     sums += vec2f(weight, weight * sites[k].part);

@@ -59,7 +59,7 @@ pub struct ToAir {
     pub moistening: f64,
     /// Its part of the diagonal of the diffusion matrix, 1/s.
     pub stiffness: f64,
-    /// Warming, K/s, and moistening, 1/s, by images beyond sides that air passes.
+    /// Warming, K/s, and moistening, 1/s, by ghost particles beyond sides that air passes.
     pub from_beyond: [f64; 2],
 }
 
@@ -134,11 +134,11 @@ impl Exchange<'_> {
         Flux { conductance, difference, water, to_solid }
     }
 
-    /// What every site gets that `owns` holds for, where the water on it changes for `step` s, into `given`. Images of sites get nothing.
+    /// What every site gets that `owns` holds for, where the water on it changes for `step` s, into `given`. Ghost particles of sites get nothing.
     pub fn to_solids(&self, step: f64, owns: impl Fn(&Site) -> bool + Sync, given: &mut Vec<ToSolid>) {
         let sites = self.contact.sites.par_iter().enumerate();
         let of = |(number, site): (usize, &Site)| {
-            if site.image || !owns(site) { ToSolid::default() } else { self.to_solid(number, step) }
+            if site.is_ghost_particle || !owns(site) { ToSolid::default() } else { self.to_solid(number, step) }
         };
         sites.map(of).collect_into_vec(given);
     }

@@ -67,8 +67,8 @@ corpuscle_gpu::declare! {
         pub const GHOST: u32 = 16;
         /// Its temperature is held.
         pub const HELD: u32 = 32;
-        /// An image beyond a side that air passes.
-        pub const IMAGE_BEYOND: u32 = 64;
+        /// A ghost particle beyond a side that air passes.
+        pub const GHOST_PARTICLE_BEYOND: u32 = 64;
         /// Steps between two searches for air of low utility.
         pub const TURN: u32 = crate::utility::UTILITY_STEPS as u32;
         /// Groups that share the particles when they are summed up for gauges.
@@ -367,7 +367,7 @@ corpuscle_gpu::declare! {
             pub outermost: AtomicU32,
         }
 
-        /// A particle of a solid, its image, a ghost sample, or, with its pairs and capacity alone, a cell of a wall behind a solid.
+        /// A particle of a solid, its ghost particle, a ghost sample, or, with its pairs and capacity alone, a cell of a wall behind a solid.
         pub struct Site {
             /// m.
             pub place: [f32; 3],
@@ -645,7 +645,7 @@ corpuscle_gpu::declare! {
         storage groups: [u32],
         /// The first site of each cell.
         storage site_start: [u32],
-        /// What air comes near: particles of solids, images and ghost samples.
+        /// What air comes near: particles of solids, ghost particles and ghost samples.
         storage sites: [Site],
         /// The particles of solids themselves, in order, then the cells of walls.
         storage own: [Site],

@@ -18,7 +18,7 @@ pub struct Conduction {
     conductance: Vec<f64>,
 }
 
-/// Two neighbours at opposite offsets lie within this of each other's image, over the spacing.
+/// Two neighbours at opposite offsets lie within this of each other's mirror image, over the spacing.
 const OPPOSITE: f64 = 0.5;
 
 impl Conduction {
@@ -111,8 +111,8 @@ impl Conduction {
 fn tensor(solids: &Solids, all: &Searched, scale: &Scale, i: usize) -> Tensor {
     let position = solids.particles[i].position;
     let opposite = |site: &Site| {
-        let image = [0, 1, 2].map(|axis| 2.0 * position[axis] - site.position[axis]);
-        all.near(image, OPPOSITE * scale.spacing).next().is_some()
+        let opposite = [0, 1, 2].map(|axis| 2.0 * position[axis] - site.position[axis]);
+        all.near(opposite, OPPOSITE * scale.spacing).next().is_some()
     };
     let mut moments = Moments::default();
     for (site, r_squared) in all.near(position, scale.h()).filter(|(_, r_squared)| *r_squared > 0.0) {

@@ -57,8 +57,8 @@ pub(crate) fn ghost_contact(
     for (number, &position) in places.iter().enumerate() {
         let site = Site::itself(number as u32, position);
         sites.push(site);
-        room.images_beyond(position, &solids.mirrors[of_body[number]], scale.h(), |image| {
-            sites.push(site.image(image));
+        room.ghost_particles_beyond(position, &solids.mirrors[of_body[number]], scale.h(), |ghost| {
+            sites.push(site.ghost_particle(ghost));
         });
     }
     let particles = solids.sites(room, scale.h(), |particle| ghostly(&(particle.body as usize)));
@@ -72,7 +72,7 @@ pub(crate) fn ghost_contact(
 fn volumes(places: &[[f64; 3]], sites: &[Site], solids: &Solids, particles: &[Site], scale: &Scale) -> Vec<f64> {
     let h = scale.h();
     let samples = Searched::new(sites, h);
-    let of_bodies = particles.iter().filter(|site| !site.image);
+    let of_bodies = particles.iter().filter(|site| !site.is_ghost_particle);
     let total: f64 = of_bodies.map(|site| solids.particles[site.particle as usize].volume).sum();
     let particles = Searched::new(particles, h);
     let filling = |of: &Searched, place: [f64; 3], volume: &(dyn Fn(&Site) -> f64 + Sync)| {

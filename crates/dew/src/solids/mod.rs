@@ -14,7 +14,7 @@ pub(crate) use ghosts::ghost_contact;
 
 use crate::air::Scale;
 use crate::faces::BEYOND;
-use crate::room::{Face, Image, Mirrors, Room};
+use crate::room::{Face, GhostParticle, Mirrors, Room};
 use crate::settings::{Conductor, WallTreatment};
 use corpuscle_model::ModelError;
 use corpuscle_solids::{Depth, Samples, Solid};
@@ -104,31 +104,31 @@ pub struct Solids {
     pub(crate) walls: Vec<u32>,
 }
 
-/// Where a particle of a solid or its image stands.
+/// Where a particle of a solid or its ghost particle stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Site {
     /// Place, m.
     pub position: [f64; 3],
     /// The particle's number.
     pub particle: u32,
-    /// Whether it is an image beyond a face.
-    pub image: bool,
-    /// The axes along which the image is mirrored.
+    /// Whether it is a ghost particle beyond a face.
+    pub is_ghost_particle: bool,
+    /// The axes along which the ghost particle is mirrored.
     pub mirrored: [bool; 3],
-    /// Whether it is an image beyond a side that air passes: what air gives it has left the room.
+    /// Whether it is a ghost particle beyond a side that air passes: what air gives it has left the room.
     pub beyond: bool,
 }
 
 impl Site {
     /// Where a particle itself stands.
     pub fn itself(particle: u32, position: [f64; 3]) -> Self {
-        Self { position, particle, image: false, mirrored: [false; 3], beyond: false }
+        Self { position, particle, is_ghost_particle: false, mirrored: [false; 3], beyond: false }
     }
 
-    /// An image of it.
-    pub fn image(self, image: Image) -> Self {
-        let Image { position, mirrored, beyond } = image;
-        Self { position, image: true, mirrored, beyond, ..self }
+    /// A ghost particle of it.
+    pub fn ghost_particle(self, ghost: GhostParticle) -> Self {
+        let GhostParticle { position, mirrored, beyond } = ghost;
+        Self { position, is_ghost_particle: true, mirrored, beyond, ..self }
     }
 }
 
@@ -214,14 +214,14 @@ impl Solids {
         self.particles.iter().filter(|particle| particle.normal.is_some())
     }
 
-    /// The particles that pass `wanted`, and their images within `reach` of the room.
+    /// The particles that pass `wanted`, and their ghost particles within `reach` of the room.
     pub fn sites(&self, room: &Room, reach: f64, wanted: impl Fn(&SolidParticle) -> bool) -> Vec<Site> {
         let mut sites = Vec::new();
         for (number, particle) in self.particles.iter().enumerate().filter(|(_, particle)| wanted(particle)) {
             let site = Site::itself(number as u32, particle.position);
             sites.push(site);
-            room.images_beyond(particle.position, &self.mirrors[particle.body as usize], reach, |image| {
-                sites.push(site.image(image));
+            room.ghost_particles_beyond(particle.position, &self.mirrors[particle.body as usize], reach, |ghost| {
+                sites.push(site.ghost_particle(ghost));
             });
         }
         sites

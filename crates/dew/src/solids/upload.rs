@@ -15,7 +15,7 @@ use corpuscle_scene::Table;
 pub(crate) struct GpuSolids {
     /// First site of each cell of the air.
     pub start: wgpu::Buffer,
-    /// Sites that air comes near: particles, images and ghost samples.
+    /// Sites that air comes near: particles, ghost particles and ghost samples.
     pub sites: wgpu::Buffer,
     /// The particles themselves, in order, then the cells of the walls behind solids.
     pub own: wgpu::Buffer,
@@ -121,7 +121,7 @@ fn gpu_site(dew: &Dew, origin: Origin, site: &Site, volume: f64) -> shared::Site
         flags: flag(particle.normal.is_some(), shared::BOUNDARY)
             | flag(particle.near_surface, shared::NEAR_SURFACE)
             | flag(dew.solids.is_held(number), shared::HELD)
-            | flag(site.beyond, shared::IMAGE_BEYOND),
+            | flag(site.beyond, shared::GHOST_PARTICLE_BEYOND),
         particle: site.particle,
         capacity: dew.solids.heat_capacity(number) as f32,
         ..shared::Site::default()

@@ -1,39 +1,39 @@
-//! Particles in cell order, together with their images beyond the edges.
+//! Particles in cell order, together with their ghost particles beyond the edges.
 
-use super::edges::{EdgeRules, Image};
+use super::edges::{EdgeRules, GhostSide};
 use corpuscle_sph::{Cells, FEWEST, NeighbourLists};
 use rayon::prelude::*;
 
-/// One place in the arrangement: a particle itself, or its image beyond an edge.
+/// One place in the arrangement: a particle itself, or its ghost particle beyond an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
     /// The particle, as numbered before arranging.
     pub from: u32,
-    /// Where its image stands.
-    pub image: Image,
+    /// Where its ghost particle stands.
+    pub ghost: GhostSide,
 }
 
-/// How far from an edge a particle has an image, in reaches: some of those beyond it reach farther than itself.
-pub(super) const IMAGE_MARGIN: f64 = 1.5;
+/// How far from an edge a particle has a ghost particle, in reaches: some of those beyond it reach farther than itself.
+pub(super) const GHOST_MARGIN: f64 = 1.5;
 
-/// Stands for no particle: an image.
-pub const IMAGE: u32 = u32::MAX;
+/// Stands for no particle: a ghost particle.
+pub const GHOST: u32 = u32::MAX;
 
-/// Particles and images, sorted into cells, with their neighbour lists.
+/// Particles and ghost particles, sorted into cells, with their neighbour lists.
 #[derive(Debug, Default)]
 pub struct Arrangement {
-    /// Cells over particles and images.
+    /// Cells over particles and ghost particles.
     pub cells: Cells<2>,
-    /// Neighbour lists over particles and images.
+    /// Neighbour lists over particles and ghost particles.
     pub lists: NeighbourLists,
     /// What stands at each place of the sorted order.
     pub entries: Vec<Entry>,
     /// The place of each particle, in sorted order.
     pub real: Vec<u32>,
-    /// The particle at each place, in sorted order; [`IMAGE`] for an image.
+    /// The particle at each place, in sorted order; [`GHOST`] for a ghost particle.
     pub particle: Vec<u32>,
-    /// The images: their place and the place of the particle that they show.
-    pub images: Vec<(u32, u32)>,
+    /// The ghost particles: their place and the place of the particle that they show.
+    pub ghosts: Vec<(u32, u32)>,
     /// Places, sorted.
     pub x: Vec<f64>,
     /// Places, sorted.
@@ -46,8 +46,8 @@ pub struct Arrangement {
 
 #[derive(Debug, Default)]
 struct Unsorted {
-    /// The images, which stand behind the particles.
-    images: Vec<Entry>,
+    /// The ghost particles, which stand behind the particles.
+    ghosts: Vec<Entry>,
     x: Vec<f64>,
     y: Vec<f64>,
     reach: Vec<f64>,
@@ -69,7 +69,7 @@ impl Arrangement {
         }
         let places = before.x.par_iter_mut().zip(&mut before.y).zip(&mut before.reach).zip(particles);
         places.with_min_len(FEWEST).for_each(|(((x, y), reach), particle)| (*x, *y, *reach) = reaching(particle));
-        before.add_images(edges);
+        before.add_ghosts(edges);
         let order = self.cells.sort([&before.x, &before.y], [cell_size; 2]);
         gather(&mut self.x, order, &before.x);
         gather(&mut self.y, order, &before.y);
@@ -78,17 +78,17 @@ impl Arrangement {
         squared.collect_into_vec(&mut self.reach_squared);
         let count = particles.len();
         let entry = |&from: &u32| match (from as usize).checked_sub(count) {
-            None => Entry { from, image: Image::NONE },
-            Some(image) => before.images[image],
+            None => Entry { from, ghost: GhostSide::NONE },
+            Some(ghost) => before.ghosts[ghost],
         };
         order.par_iter().with_min_len(FEWEST).map(entry).collect_into_vec(&mut self.entries);
         self.cells.set_reach(&self.reach);
         self.tell_apart(count);
     }
 
-    /// Finds which places hold particles and which images.
+    /// Finds which places hold particles and which ghost particles.
     fn tell_apart(&mut self, count: usize) {
-        self.images.clear();
+        self.ghosts.clear();
         if count == self.entries.len() {
             (0..count as u32).into_par_iter().with_min_len(FEWEST).collect_into_vec(&mut self.real);
             self.particle.clone_from(&self.real);
@@ -99,16 +99,16 @@ impl Arrangement {
         self.real.clear();
         self.particle.clear();
         for (place, entry) in self.entries.iter().enumerate() {
-            if entry.image == Image::NONE {
+            if entry.ghost == GhostSide::NONE {
                 place_of[entry.from as usize] = place as u32;
                 self.particle.push(self.real.len() as u32);
                 self.real.push(place as u32);
             } else {
-                self.particle.push(IMAGE);
-                self.images.push((place as u32, entry.from));
+                self.particle.push(GHOST);
+                self.ghosts.push((place as u32, entry.from));
             }
         }
-        self.images.iter_mut().for_each(|(_, shown)| *shown = place_of[*shown as usize]);
+        self.ghosts.iter_mut().for_each(|(_, shown)| *shown = place_of[*shown as usize]);
     }
 
     /// Brings `particles` into sorted order, by way of `spare`.
@@ -118,7 +118,7 @@ impl Arrangement {
         std::mem::swap(particles, spare);
     }
 
-    /// Places in the arrangement: particles and images.
+    /// Places in the arrangement: particles and ghost particles.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
@@ -130,16 +130,16 @@ impl Arrangement {
 }
 
 impl Unsorted {
-    /// Adds the images of the particles near the edges.
-    fn add_images(&mut self, edges: &EdgeRules) {
-        self.images.clear();
+    /// Adds the ghost particles of the particles near the edges.
+    fn add_ghosts(&mut self, edges: &EdgeRules) {
+        self.ghosts.clear();
         for from in 0..self.x.len() {
             let (x, y, reach) = (self.x[from], self.y[from], self.reach[from]);
-            if edges.bounds.holds_disc(x, y, IMAGE_MARGIN * reach) {
+            if edges.bounds.holds_disc(x, y, GHOST_MARGIN * reach) {
                 continue;
             }
-            edges.images(x, y, IMAGE_MARGIN * reach, |image, x, y| {
-                self.images.push(Entry { from: from as u32, image });
+            edges.ghosts(x, y, GHOST_MARGIN * reach, |ghost, x, y| {
+                self.ghosts.push(Entry { from: from as u32, ghost });
                 self.x.push(x);
                 self.y.push(y);
                 self.reach.push(reach);

@@ -1,19 +1,19 @@
-//! The four sides of the ground: images of particles beyond them.
+//! The four sides of the ground: ghost particles of particles beyond them.
 
 use corpuscle_terrain::Bounds;
 
-/// Where an image stands: beyond the low side (-1), the high side (1) or neither (0), along x and y.
+/// Where a ghost particle stands: beyond the low side (-1), the high side (1) or neither (0), along x and y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Image {
+pub struct GhostSide {
     /// Beyond the west (-1) or east (1) side.
     pub x: i8,
     /// Beyond the south (-1) or north (1) side.
     pub y: i8,
 }
 
-impl Image {
+impl GhostSide {
     /// The particle itself.
-    pub const NONE: Image = Image { x: 0, y: 0 };
+    pub const NONE: GhostSide = GhostSide { x: 0, y: 0 };
 }
 
 /// What a side does to the water. Sides are numbered 0 west, 1 east, 2 south, 3 north.
@@ -37,27 +37,27 @@ pub struct EdgeRules {
 }
 
 impl EdgeRules {
-    /// The rule that an image follows along x, if it stands beyond the west or east side.
-    pub fn along_x(&self, image: Image) -> Option<&EdgeRule> {
-        (image.x != 0).then(|| &self.rules[usize::from(image.x > 0)])
+    /// The rule that a ghost particle follows along x, if it stands beyond the west or east side.
+    pub fn along_x(&self, ghost: GhostSide) -> Option<&EdgeRule> {
+        (ghost.x != 0).then(|| &self.rules[usize::from(ghost.x > 0)])
     }
 
-    /// The rule that an image follows along y, if it stands beyond the south or north side.
-    pub fn along_y(&self, image: Image) -> Option<&EdgeRule> {
-        (image.y != 0).then(|| &self.rules[2 + usize::from(image.y > 0)])
+    /// The rule that a ghost particle follows along y, if it stands beyond the south or north side.
+    pub fn along_y(&self, ghost: GhostSide) -> Option<&EdgeRule> {
+        (ghost.y != 0).then(|| &self.rules[2 + usize::from(ghost.y > 0)])
     }
 
-    /// Calls `put` with each image of a particle at (x, y) that stands within `margin` of the rectangle.
-    pub fn images(&self, x: f64, y: f64, margin: f64, mut put: impl FnMut(Image, f64, f64)) {
+    /// Calls `put` with each ghost particle of a particle at (x, y) that stands within `margin` of the rectangle.
+    pub fn ghosts(&self, x: f64, y: f64, margin: f64, mut put: impl FnMut(GhostSide, f64, f64)) {
         let along_x = beyond(x, self.bounds.x_min, self.bounds.x_max, margin, &self.rules[..2]);
         let along_y = beyond(y, self.bounds.y_min, self.bounds.y_max, margin, &self.rules[2..]);
         for (side, place) in along_x.iter().flatten() {
-            put(Image { x: *side, y: 0 }, *place, y);
+            put(GhostSide { x: *side, y: 0 }, *place, y);
         }
         for (side, place) in along_y.iter().flatten() {
-            put(Image { x: 0, y: *side }, x, *place);
+            put(GhostSide { x: 0, y: *side }, x, *place);
             for (side_x, place_x) in along_x.iter().flatten() {
-                put(Image { x: *side_x, y: *side }, *place_x, *place);
+                put(GhostSide { x: *side_x, y: *side }, *place_x, *place);
             }
         }
     }
@@ -108,16 +108,16 @@ impl EdgeRules {
 /// Outward unit vectors of the sides.
 pub(crate) const OUTWARD: [[f64; 2]; 4] = [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]];
 
-/// Images beyond the low and the high side along one axis; none beyond sides over which water leaves: there it goes on
+/// Ghost particles beyond the low and the high side along one axis; none beyond sides over which water leaves: there it goes on
 /// by itself.
 fn beyond(place: f64, low: f64, high: f64, margin: f64, rules: &[EdgeRule]) -> [Option<(i8, f64)>; 2] {
     let periodic = rules[0] == EdgeRule::Periodic;
     let below = if periodic { place - (high - low) } else { 2.0 * low - place };
     let above = if periodic { place + (high - low) } else { 2.0 * high - place };
-    let images = |rule: &EdgeRule| matches!(rule, EdgeRule::Periodic | EdgeRule::Wall);
-    let low_image = images(&rules[0]) && below > low - margin && below <= low;
-    let high_image = images(&rules[1]) && above < high + margin && above >= high;
-    [low_image.then_some((-1, below)), high_image.then_some((1, above))]
+    let ghosts = |rule: &EdgeRule| matches!(rule, EdgeRule::Periodic | EdgeRule::Wall);
+    let low_ghost = ghosts(&rules[0]) && below > low - margin && below <= low;
+    let high_ghost = ghosts(&rules[1]) && above < high + margin && above >= high;
+    [low_ghost.then_some((-1, below)), high_ghost.then_some((1, above))]
 }
 
 #[cfg(test)]
@@ -129,22 +129,22 @@ mod tests {
         EdgeRules { bounds, rules: [rule; 4] }
     }
 
-    fn images(rules: &EdgeRules, x: f64, y: f64) -> Vec<(i8, i8, f64, f64)> {
+    fn ghosts(rules: &EdgeRules, x: f64, y: f64) -> Vec<(i8, i8, f64, f64)> {
         let mut found = Vec::new();
-        rules.images(x, y, 2.0, |image, x, y| found.push((image.x, image.y, x, y)));
+        rules.ghosts(x, y, 2.0, |ghost, x, y| found.push((ghost.x, ghost.y, x, y)));
         found
     }
 
     #[test]
     fn a_wall_mirrors_and_a_corner_mirrors_twice() {
         let wall = rules(EdgeRule::Wall);
-        assert_eq!(images(&wall, 5.0, 2.5), vec![]);
-        assert_eq!(images(&wall, 1.0, 4.5), vec![(-1, 0, -1.0, 4.5), (0, 1, 1.0, 5.5), (-1, 1, -1.0, 5.5)]);
+        assert_eq!(ghosts(&wall, 5.0, 2.5), vec![]);
+        assert_eq!(ghosts(&wall, 1.0, 4.5), vec![(-1, 0, -1.0, 4.5), (0, 1, 1.0, 5.5), (-1, 1, -1.0, 5.5)]);
     }
 
     #[test]
     fn a_periodic_side_shows_the_other_one() {
-        assert_eq!(images(&rules(EdgeRule::Periodic), 9.5, 2.5), vec![(-1, 0, -0.5, 2.5)]);
+        assert_eq!(ghosts(&rules(EdgeRule::Periodic), 9.5, 2.5), vec![(-1, 0, -0.5, 2.5)]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Samples of the water at any position, from the particles near it.
 
 use super::SAMPLED;
-use super::arrangement::{Arrangement, IMAGE};
+use super::arrangement::{Arrangement, GHOST};
 use super::obstacles::Obstacles;
 use super::particle::Particle;
 use crate::sampling::Sample;
@@ -37,21 +37,21 @@ impl Sampler<'_> {
     pub fn near(&self, x: f64, y: f64, reach: f64) -> impl Iterator<Item = &Particle> {
         let ranges = (!self.particles.is_empty()).then(|| self.arrangement.cells.ranges([x, y], reach));
         let places = ranges.into_iter().flatten().flat_map(|range| &self.arrangement.particle[range]);
-        places.filter(|&&k| k != IMAGE).map(|&k| &self.particles[k as usize])
+        places.filter(|&&k| k != GHOST).map(|&k| &self.particles[k as usize])
     }
 
     /// The share of the surroundings of (x, y) that ghost particles beyond walls and periodic sides cover.
-    fn covered_by_images(&self, x: f64, y: f64) -> f64 {
-        let Arrangement { cells, particle, images, x: at_x, y: at_y, .. } = self.arrangement;
+    fn covered_by_ghosts(&self, x: f64, y: f64) -> f64 {
+        let Arrangement { cells, particle, ghosts, x: at_x, y: at_y, .. } = self.arrangement;
         let places = cells.ranges([x, y], SEARCH_MARGIN * cells.reach_at([x, y])).flatten();
         let weight = |place: usize| {
-            let image = images.binary_search_by_key(&(place as u32), |(image, _)| *image).ok()?;
-            let shown = &self.particles[particle[images[image].1 as usize] as usize];
+            let ghost = ghosts.binary_search_by_key(&(place as u32), |(ghost, _)| *ghost).ok()?;
+            let shown = &self.particles[particle[ghosts[ghost].1 as usize] as usize];
             let h = SAMPLED * shown.h;
             let distance = (x - at_x[place]).hypot(y - at_y[place]);
             (distance < 2.0 * h).then(|| shown.area() * CubicSpline::<2>::new(h).value_at(distance))
         };
-        places.filter(|place| particle[*place] == IMAGE).filter_map(weight).sum()
+        places.filter(|place| particle[*place] == GHOST).filter_map(weight).sum()
     }
 
     /// The position, when the particles were arranged, of the water that is at (x, y) now: in a fast step it moves farther than their support.
@@ -109,7 +109,7 @@ impl Sampler<'_> {
             v += weight * particle.v;
         });
         let covers = |total: f64| {
-            let beside = || self.covered_by_images(x, y) + self.covered_by_obstacles(x, y, lengths / total);
+            let beside = || self.covered_by_ghosts(x, y) + self.covered_by_obstacles(x, y, lengths / total);
             total >= COVERED || total > 0.0 && total + beside() >= COVERED
         };
         if !covers(total) {

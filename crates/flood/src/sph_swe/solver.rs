@@ -6,7 +6,7 @@
 //! Not printed in the paper and taken from where its table points (Mueller, Charypar & Gross 2003): the pressure
 //! p = k (rho - rho0) with their symmetric pair force, and their viscosity.
 
-use super::arrangement::{Arrangement, IMAGE};
+use super::arrangement::{Arrangement, GHOST};
 use super::density::{Depths, NumberDensities};
 use super::edges::EdgeRule;
 use super::obstacles::Obstacles;
@@ -21,7 +21,7 @@ use corpuscle_sph::{
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 
-/// What the force pass reads of a particle or image: one cache line, a row of numbers to gather.
+/// What the force pass reads of a particle or ghost particle: one cache line, a row of numbers to gather.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(super) struct Column {
@@ -112,10 +112,10 @@ impl SphSwe {
         if particles.par_iter().all(is_first) {
             return;
         }
-        let Arrangement { particle, images, .. } = &self.arrangement;
-        let volume = |&k: &u32| if k == IMAGE { 0.0 } else { particles[k as usize].volume };
+        let Arrangement { particle, ghosts, .. } = &self.arrangement;
+        let volume = |&k: &u32| if k == GHOST { 0.0 } else { particles[k as usize].volume };
         particle.par_iter().map(volume).collect_into_vec(&mut self.volumes);
-        for &(place, shown) in images {
+        for &(place, shown) in ghosts {
             self.volumes[place as usize] = self.volumes[shown as usize];
         }
     }
@@ -158,7 +158,7 @@ impl SphSwe {
         let Parameters { density_kg_per_m3: rho0, gas_constant, clip_negative_pressure, .. } = self.parameters;
         self.columns.resize(self.arrangement.len(), Column::default());
         self.columns.par_iter_mut().zip(&self.arrangement.particle).for_each(|(column, &particle)| {
-            if particle == IMAGE {
+            if particle == GHOST {
                 return;
             }
             let particle = &particles[particle as usize];
@@ -175,15 +175,15 @@ impl SphSwe {
                 h: particle.h,
             };
         });
-        for &(place, source) in &self.arrangement.images {
+        for &(place, source) in &self.arrangement.ghosts {
             let place = place as usize;
             let mut column = self.columns[source as usize];
             (column.x, column.y) = (self.arrangement.x[place], self.arrangement.y[place]);
-            let image = self.arrangement.entries[place].image;
-            if surroundings.edges.along_x(image) == Some(&EdgeRule::Wall) {
+            let ghost = self.arrangement.entries[place].ghost;
+            if surroundings.edges.along_x(ghost) == Some(&EdgeRule::Wall) {
                 column.u = -column.u;
             }
-            if surroundings.edges.along_y(image) == Some(&EdgeRule::Wall) {
+            if surroundings.edges.along_y(ghost) == Some(&EdgeRule::Wall) {
                 column.v = -column.v;
             }
             self.columns[place] = column;

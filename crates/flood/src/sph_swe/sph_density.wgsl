@@ -22,9 +22,9 @@ fn depth_of_water(i: u32, place: vec2f, h: f32) -> f32 {
             let end = start[line + across.y + 1u];
             for (var j = start[line + across.x]; j < end; j++) {
                 let site = spots[j];
-                let there = image_of(mirror, site.xy);
+                let there = ghost_of(mirror, site.xy);
                 let way = there - place;
-                if (j == i && k == 0u) || (k > 0u && !has_image(mirror, there, site.w)) {
+                if (j == i && k == 0u) || (k > 0u && !has_ghost(mirror, there, site.w)) {
                     continue;
                 }
                 sum += site.z * value_shape(dot(way, way) / (h * h));

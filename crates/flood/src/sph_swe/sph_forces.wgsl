@@ -45,10 +45,10 @@ fn by_pairs(i: u32, own: Column) -> vec2f {
             let end = start[line + across.y + 1u];
             for (var j = start[line + across.x]; j < end; j++) {
                 let near = columns[j];
-                let there = image_of(mirror, near.place);
+                let there = ghost_of(mirror, near.place);
                 let e = there - own.place;
                 let r = max(length(e), 2e-12 * h);
-                if r >= h || (j == i && k == 0u) || (k > 0u && !has_image(mirror, there, near.h)) {
+                if r >= h || (j == i && k == 0u) || (k > 0u && !has_ghost(mirror, there, near.h)) {
                     continue;
                 }
                 let push = near.area * (near.pressure + own.pressure) * 0.5 * kernel_slope(r, h) / r;

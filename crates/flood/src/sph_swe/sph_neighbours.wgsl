@@ -5,12 +5,12 @@
 #import sph_common
 
 struct Mirror {
-    // The image of a place p stands at sign * p + shift.
+    // The ghost particle of a place p stands at sign * p + shift.
     sign: vec2f,
     shift: vec2f,
     // Beyond which side along x and y it stands: -1, 0 or 1.
     beyond: vec2f,
-    // Whether there are images.
+    // Whether there are ghost particles.
     is_there: bool,
 }
 
@@ -23,7 +23,7 @@ fn mirrors_round(place: vec2f) -> u32 {
     return select(MIRRORS, 1u, is_amid);
 }
 
-// Sign, shift and whether there are images beyond one side of an axis.
+// Sign, shift and whether there are ghost particles beyond one side of an axis.
 fn along(beyond: i32, low: f32, high: f32, rules: vec2u) -> vec3f {
     if beyond == 0 {
         return vec3f(1.0, 0.0, 1.0);
@@ -55,7 +55,7 @@ fn behind(mirror: Mirror, place: vec2f) -> vec2f {
 }
 
 // The position of the ghost particle of a particle at `place`.
-fn image_of(mirror: Mirror, place: vec2f) -> vec2f {
+fn ghost_of(mirror: Mirror, place: vec2f) -> vec2f {
     return mirror.sign * place + mirror.shift;
 }
 
@@ -66,16 +66,16 @@ fn sees(mirror: Mirror, place: vec2f, reach: f32) -> bool {
     }
     let truth = behind(mirror, place);
     let bounds = parameters.bounds;
-    // Along an open side, particles that have left have images too.
+    // Along an open side, particles that have left have ghost particles too.
     let along = mirror.beyond == vec2f(0.0);
     return all(along | ((truth + reach >= bounds.xz) & (truth - reach <= bounds.yw)));
 }
 
 // Whether a particle has a ghost particle at `place`: not too far from the edge.
-fn has_image(mirror: Mirror, place: vec2f, reach: f32) -> bool {
+fn has_ghost(mirror: Mirror, place: vec2f, reach: f32) -> bool {
     let bounds = parameters.bounds;
     let out = max(bounds.xz - place, place - bounds.yw);
-    let near = (out >= vec2f(0.0)) & (out < vec2f(IMAGE_MARGIN * reach));
+    let near = (out >= vec2f(0.0)) & (out < vec2f(GHOST_MARGIN * reach));
     return all(near | (mirror.beyond == vec2f(0.0)));
 }
 

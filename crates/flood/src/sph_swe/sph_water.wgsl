@@ -5,7 +5,7 @@
 #import sph_ground
 
 // The part of the surroundings of a position that ghost particles beyond walls and periodic sides cover.
-fn covered_by_images(place: vec2f, search_radius: f32) -> f32 {
+fn covered_by_ghosts(place: vec2f, search_radius: f32) -> f32 {
     var sum = 0.0;
     let mirrors = mirrors_round(place);
     for (var k = 1u; k < mirrors; k++) {
@@ -18,9 +18,9 @@ fn covered_by_images(place: vec2f, search_radius: f32) -> f32 {
             let line = row * parameters.grid.columns;
             for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
                 let particle = unpacked(particles[j]);
-                let there = image_of(mirror, particle.place);
+                let there = ghost_of(mirror, particle.place);
                 let h = SAMPLED * particle.h;
-                if has_image(mirror, there, 2.0 * h) {
+                if has_ghost(mirror, there, 2.0 * h) {
                     sum += particle.volume / particle.depth * spline(distance(there, place), 1.0 / h);
                 }
             }
@@ -113,7 +113,7 @@ fn water_later(place: vec2f, since: f32) -> vec3f {
     }
     var covered = total;
     if total > 0.0 && total < COVERED {
-        covered += covered_by_images(place, SEARCH_MARGIN * reach_at(place)) + covered_by_obstacles(place, lengths / total);
+        covered += covered_by_ghosts(place, SEARCH_MARGIN * reach_at(place)) + covered_by_obstacles(place, lengths / total);
     }
     if covered < COVERED {
         return vec3f(0.0);

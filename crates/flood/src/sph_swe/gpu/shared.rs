@@ -43,8 +43,8 @@ corpuscle_gpu::declare! {
         pub const BEYOND: f32 = super::super::exchange::BEYOND as f32;
         /// Lowest Froude number of a particle that has left.
         pub const SLOWEST_LEAVING: f32 = super::super::exchange::SLOWEST_LEAVING as f32;
-        /// How far from an edge a particle has an image, in reaches.
-        pub const IMAGE_MARGIN: f32 = super::super::arrangement::IMAGE_MARGIN as f32;
+        /// How far from an edge a particle has a ghost particle, in reaches.
+        pub const GHOST_MARGIN: f32 = super::super::arrangement::GHOST_MARGIN as f32;
         /// Support of the sampling kernel over that of the scheme's.
         pub const SAMPLED: f32 = super::super::SAMPLED as f32;
         /// Share of a position's surroundings that water must cover for the position to be wet.
