@@ -5,7 +5,7 @@ use crate::overlay::{self, Over};
 use corpuscle::model::{Frame, ParticleSet, Values};
 use corpuscle::pictures::Shown;
 use corpuscle_drawing::text::number;
-use egui::{Color32, Frame as Box, Grid, Pos2, Rect, RichText, Stroke, Ui};
+use egui::{Color32, Grid, Pos2, Rect, RichText, Stroke, Ui};
 
 /// Largest distance of a click from a particle, points.
 const REACH: f32 = 22.0;
@@ -98,7 +98,7 @@ impl Picked {
     pub fn card(&self, ui: &mut Ui, frame: &Frame, units: bool) -> bool {
         let mut away = false;
         let unit = |unit: &'static str| if units { unit } else { "" };
-        Box::new().fill(ui.visuals().window_fill.gamma_multiply(0.94)).corner_radius(8).inner_margin(10).show(
+        egui::Frame::new().fill(ui.visuals().window_fill.gamma_multiply(0.94)).corner_radius(8).inner_margin(10).show(
             ui,
             |ui| {
                 ui.horizontal(|ui| {

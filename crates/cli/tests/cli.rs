@@ -194,7 +194,10 @@ fn an_old_name_is_told() {
     let told = place.run(&["run", "lake.toml", "-o", "lake"]).expect_status(0).stderr;
     let log = String::from_utf8(place.read("lake/log.txt")).unwrap();
     for text in [told, log] {
-        assert!(text.contains("note: ") && text.contains("lake.toml:") && text.contains("write flood.scheme = \"sph-swe\""), "{text}");
+        assert!(
+            text.contains("note: ") && text.contains("lake.toml:") && text.contains("write flood.scheme = \"sph-swe\""),
+            "{text}"
+        );
     }
 }
 

@@ -237,6 +237,6 @@ impl Model for Dew {
         self.keep_part();
         self.set_evaporation();
         self.apply_overrides();
-        self.renew_gpu(self.has_been_touched())
+        self.update_gpu(self.has_been_touched())
     }
 }

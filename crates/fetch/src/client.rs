@@ -15,7 +15,7 @@ const MOST_BYTES: u64 = 1 << 29;
 const LONGEST: u32 = 10;
 
 /// Interval at which the stop flag is checked.
-const LOOK: Duration = Duration::from_millis(50);
+const STOP_CHECK_INTERVAL: Duration = Duration::from_millis(50);
 
 /// A response of the server.
 #[derive(Debug, PartialEq)]
@@ -83,7 +83,7 @@ impl Client {
             if self.observer.is_stopped() {
                 return Err(FetchError::Stopped);
             }
-            std::thread::sleep(LOOK.min(pause));
+            std::thread::sleep(STOP_CHECK_INTERVAL.min(pause));
         }
         Ok(())
     }

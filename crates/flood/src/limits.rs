@@ -2,7 +2,7 @@
 
 use crate::setup::{InitialWater, initial_water, lattice, setup};
 use corpuscle_model::ModelError;
-use corpuscle_scene::Flood as FloodScene;
+use corpuscle_scene::Flood;
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 
@@ -20,7 +20,7 @@ const DEPTH_SAMPLES_PER_SIDE: usize = 200;
 
 /// Refuses bodies of water and blocks that would take too many particles of `volume` m3, `spacing` m apart in blocks.
 pub(crate) fn check_count(
-    scene: &FloodScene,
+    scene: &Flood,
     bodies: &[InitialWater],
     terrain: &Terrain,
     spacing: f64,
@@ -41,7 +41,7 @@ fn check_particles(count: f64) -> Result<(), ModelError> {
 }
 
 /// Particles of the blocks in the air.
-fn falling(scene: &FloodScene, terrain: &Terrain, spacing: f64) -> f64 {
+fn falling(scene: &Flood, terrain: &Terrain, spacing: f64) -> f64 {
     let blocks = scene.water.iter().filter_map(|water| water.block.as_ref());
     let particles = blocks.map(|block| {
         let [columns, rows] = lattice(block, terrain, spacing);
@@ -51,7 +51,7 @@ fn falling(scene: &FloodScene, terrain: &Terrain, spacing: f64) -> f64 {
 }
 
 /// Refuses particles of scheme voronoi so close that not even the list of where they might come to be fits in memory.
-pub(crate) fn check_cells(scene: &FloodScene, terrain: &Terrain) -> Result<(), ModelError> {
+pub(crate) fn check_cells(scene: &Flood, terrain: &Terrain) -> Result<(), ModelError> {
     let [east, north] = terrain.bounds().size();
     let count = scene.spacing_m.map_or(0.0, |spacing| east * north / spacing.powi(2));
     if count <= MOST_CELLS_OF_TERRAIN {
@@ -64,7 +64,7 @@ pub(crate) fn check_cells(scene: &FloodScene, terrain: &Terrain) -> Result<(), M
 }
 
 /// Refuses water at the start that is deeper than any on Earth: where particles do not hold a volume each, no count of them does.
-pub(crate) fn check_depths(scene: &FloodScene, terrain: &Terrain, folder: &Path) -> Result<(), ModelError> {
+pub(crate) fn check_depths(scene: &Flood, terrain: &Terrain, folder: &Path) -> Result<(), ModelError> {
     // Rasters are data, and reading them takes its time.
     let mut written = scene.clone();
     written.water.retain(|water| water.depth_raster.is_none());
@@ -101,7 +101,7 @@ impl InitialWater<'_> {
 }
 
 /// Refuses blocks that reach beyond the terrain, where there is no ground for them to fall onto, and those of too many particles.
-pub(crate) fn check_blocks(scene: &FloodScene, terrain: &Terrain) -> Result<(), ModelError> {
+pub(crate) fn check_blocks(scene: &Flood, terrain: &Terrain) -> Result<(), ModelError> {
     for (number, water) in scene.water.iter().enumerate() {
         let Some(block) = &water.block else { continue };
         check_inside(&format!("flood.water.{number}.block"), &[block.from, block.to], terrain)?;

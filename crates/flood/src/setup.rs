@@ -5,7 +5,7 @@ use crate::gauges::{LineGauge, PointGauge};
 use crate::limits::{check_inside, span};
 use crate::zone::{Source, Zone};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Block, Flood as FloodScene, Gauge, Section, Series, Table, Water};
+use corpuscle_scene::{Block, Flood, Gauge, Section, Series, Table, Water};
 use corpuscle_terrain::{Bounds, RasterField, Terrain};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -34,7 +34,7 @@ pub(crate) fn load(series: &Series, folder: &Path) -> Result<Table, ModelError> 
 
 /// The bodies of water that a scene fills at the start (blocks in the air apart).
 pub(crate) fn initial_water<'a>(
-    scene: &FloodScene,
+    scene: &Flood,
     terrain: &'a Terrain,
     folder: &Path,
 ) -> Result<Vec<InitialWater<'a>>, ModelError> {
@@ -138,7 +138,7 @@ pub(crate) fn lattice(block: &Block, terrain: &Terrain, spacing: f64) -> [f64; 2
 }
 
 pub(crate) fn sources(
-    scene: &FloodScene,
+    scene: &Flood,
     terrain: &Terrain,
     folder: &Path,
     spacing: f64,
@@ -163,7 +163,7 @@ pub(crate) fn sources(
     scene.inflow.iter().map(source).collect()
 }
 
-pub(crate) fn point_gauges(scene: &FloodScene, terrain: &Terrain) -> Result<Vec<PointGauge>, ModelError> {
+pub(crate) fn point_gauges(scene: &Flood, terrain: &Terrain) -> Result<Vec<PointGauge>, ModelError> {
     let gauge = |gauge: &Gauge| {
         let at = match (gauge.at, gauge.lon_lat) {
             (Some(at), _) => terrain.to_model(at),
@@ -182,7 +182,7 @@ pub(crate) fn point_gauges(scene: &FloodScene, terrain: &Terrain) -> Result<Vec<
     scene.gauge.iter().map(gauge).collect()
 }
 
-pub(crate) fn line_gauges(scene: &FloodScene, terrain: &Terrain, spacing: f64) -> Result<Vec<LineGauge>, ModelError> {
+pub(crate) fn line_gauges(scene: &Flood, terrain: &Terrain, spacing: f64) -> Result<Vec<LineGauge>, ModelError> {
     let gauge = |section: &Section| {
         check_inside(&format!("the section '{}'", section.name), &section.line, terrain)?;
         let line: Vec<_> = section.line.iter().map(|&point| terrain.to_model(point)).collect();

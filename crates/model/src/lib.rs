@@ -149,7 +149,7 @@ pub trait Model: Any + Send {
         Vec::new()
     }
 
-    /// The ways of the particles that are followed, up to the time shown. Empty where none is.
+    /// The trajectories of the particles that are followed, up to the time shown. Empty where none is.
     fn paths(&self) -> Vec<Path> {
         Vec::new()
     }

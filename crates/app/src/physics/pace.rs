@@ -5,11 +5,11 @@ use std::time::Duration;
 /// Longest duration of a slice, s: each gives a picture, and commands are taken between them.
 const LONGEST: f64 = 0.015;
 /// Longest delay that the next slice makes up for, s.
-const MOST_OWED: f64 = 0.1;
+const LONGEST_DELAY: f64 = 0.1;
 /// A slice on a device that draws as well waits for pictures besides, which makes it no use to have it as short as may be: it may take from
 /// so long to so long, s, and goes farther or less far by this factor where it does not.
 const BESIDE_PICTURES: [f64; 2] = [0.03, 0.04];
-const FARTHER: f64 = 1.25;
+const SLICE_FACTOR: f64 = 1.25;
 /// Weight of the newest slice in the mean cost, and in the pace reported.
 const NEWEST: f64 = 0.2;
 
@@ -33,7 +33,7 @@ impl Pace {
 
     /// The advance of the next slice, s, when the last one began so long ago. The first slice is a trial.
     pub fn next(&self, since: Duration) -> f64 {
-        let wanted = self.requested * since.as_secs_f64().min(MOST_OWED);
+        let wanted = self.requested * since.as_secs_f64().min(LONGEST_DELAY);
         match self.cost {
             Some(cost) => wanted.min(LONGEST / cost.max(1e-300)),
             None => 0.02 * wanted,
@@ -42,14 +42,14 @@ impl Pace {
 
     /// The same on a device that also draws, after a slice that advanced so far, s, and worked so long; one without a step only waited.
     pub fn next_beside_pictures(&mut self, since: Duration, far: f64, worked: Duration, has_stepped: bool) -> f64 {
-        let wanted = self.requested * since.as_secs_f64().min(MOST_OWED);
+        let wanted = self.requested * since.as_secs_f64().min(LONGEST_DELAY);
         let most = self.most.get_or_insert(wanted);
         let [short, long] = BESIDE_PICTURES;
         let (worked, is_most) = (worked.as_secs_f64(), far > 0.9 * *most);
         if has_stepped && worked > long {
-            *most /= FARTHER;
+            *most /= SLICE_FACTOR;
         } else if is_most && (!has_stepped || worked < short) {
-            *most *= FARTHER;
+            *most *= SLICE_FACTOR;
         }
         wanted.min(*most)
     }

@@ -175,7 +175,7 @@ impl Dew {
         self.as_set_up.get_or_insert(before);
         self.keep_sound_faster();
         self.state.overrides = Some(self.as_it_is());
-        self.renew_gpu(true)
+        self.update_gpu(true)
     }
 
     /// True where something was changed live, in this state or in one before.
@@ -185,7 +185,7 @@ impl Dew {
 
     /// Uploads the state to a GPU that takes the steps; where something was changed live it is set up anew.
     #[cfg_attr(not(feature = "gpu"), expect(unused_variables, clippy::unnecessary_wraps, reason = "there is no GPU"))]
-    pub(crate) fn renew_gpu(&mut self, anew: bool) -> Result<(), ModelError> {
+    pub(crate) fn update_gpu(&mut self, anew: bool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         self.upload_to_gpu(anew)?;
         Ok(())

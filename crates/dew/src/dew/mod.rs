@@ -103,7 +103,7 @@ pub(crate) struct State {
     pub time: f64,
     pub steps: u64,
     pub particle_steps: u64,
-    /// Largest sound time step from here, s.
+    /// Largest stable time step (CFL) from here, s.
     pub time_step: f64,
     pub next_id: u64,
     pub air: Vec<Particle>,
@@ -264,7 +264,7 @@ impl Dew {
     }
 
     /// Makes room for all that conducts heat, and counts its energy from here on, after something has been added to it.
-    pub(crate) fn renew_heat_network(&mut self) {
+    pub(crate) fn rebuild_heat_network(&mut self) {
         let groups = self.solids.groups();
         self.conductances = (0..self.solids.nodes()).map(|i| self.conduction.sum(i)).collect();
         self.state.held_heat.resize(groups, CompensatedSum::default());
@@ -473,7 +473,7 @@ impl Dew {
         &self.state.water_on
     }
 
-    /// Largest sound time step from here, s.
+    /// Largest stable time step (CFL) from here, s.
     pub fn time_step(&self) -> f64 {
         self.state.time_step
     }

@@ -195,7 +195,7 @@ impl Dew {
         self.settings.cfl * self.scale.h() / (self.air.sound_speed + speed)
     }
 
-    /// The largest sound time step: sound must not cross a smoothing length, nor diffusion overshoot.
+    /// The largest stable time step (CFL): sound must not cross a smoothing length, nor diffusion overshoot.
     pub(super) fn next_step(&self, stiff: &[f64], extremes: Extremes) -> f64 {
         let [speed, acceleration] = [extremes.speed_squared, extremes.acceleration_squared].map(f64::sqrt);
         let stiffest = stiff.iter().copied().fold(extremes.diffusion, f64::max);

@@ -132,8 +132,8 @@ fn mark_columns(particle: Particle) {
     }
 }
 
-// Whether a particle is taken out that has been of no use for long. Twin of `update_utility`.
-fn tend(particle: ptr<function, Particle>) -> bool {
+// Updates whether a particle is of low utility; true where it is to be taken out. Twin of `update_utility`.
+fn update_utility(particle: ptr<function, Particle>) -> bool {
     let role = (*particle).role;
     if role != INSIDE && role != IDLE {
         return false;
@@ -165,8 +165,8 @@ fn main(
         var cell = status.cells - 1u;
         if !cross_over(&particle) {
             mark_columns(particle);
-            let is_turn = is_set(TENDS) && (status.turn + status.steps) % TURN == 0u;
-            if !(is_turn && tend(&particle)) {
+            let is_turn = is_set(FINDS_LOW_UTILITY) && (status.turn + status.steps) % TURN == 0u;
+            if !(is_turn && update_utility(&particle)) {
                 cell = cell_at(particle.place);
             }
         }

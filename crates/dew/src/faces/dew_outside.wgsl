@@ -62,8 +62,8 @@ fn add_particle(number: u32, column: u32, depth: f32, at: u32, id: u32) {
     }
 }
 
-// Goes through the columns of a side; gives how many particles there are then.
-fn tend_side(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> u32 {
+// Adds the particles that columns beyond a side lack; gives how many particles there are then. Twin of `add_outside` in `faces/open.rs`.
+fn add_outside(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> u32 {
     let along = columns_along(number);
     let all = along.x * along.y;
     let first = first_column(number);
@@ -101,7 +101,7 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     var count = old;
     for (var number = 0u; number < NO_FACE; number++) {
         if face(number) == OPEN {
-            count = tend_side(number, count, id, is_going, thread);
+            count = add_outside(number, count, id, is_going, thread);
         }
     }
     // All have read what it was.

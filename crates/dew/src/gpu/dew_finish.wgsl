@@ -46,7 +46,7 @@ fn book(all: Partial) {
     status.came = add_four(status.came, all.came);
     status.went = add_four(status.went, all.went);
     // Beyond faces, and to air of low utility.
-    if is_set(IS_PASSED) || is_set(TENDS) {
+    if is_set(IS_PASSED) || is_set(FINDS_LOW_UTILITY) {
         let water = step * all.diffused.y;
         let energy = step * (parameters.heat_capacity * all.diffused.x + parameters.latent_heat * all.diffused.y);
         status.diffused = add_four(status.diffused, max(vec4f(water, -water, energy, -energy), vec4f(0.0)));

@@ -169,7 +169,7 @@ fn flags(dew: &Dew) -> u32 {
         (settings.fog || particles, shared::SATURATES),
         (dew.wetting.is_some(), shared::REFUSES_FAST),
         (settings.humidity == Humidity::Relative, shared::RELATIVE),
-        (settings.low_utility.is_some(), shared::TENDS),
+        (settings.low_utility.is_some(), shared::FINDS_LOW_UTILITY),
         (dew.is_closed(), shared::IS_CLOSED),
         (settings.mean == Mean::Harmonic, shared::IS_HARMONIC),
     ];

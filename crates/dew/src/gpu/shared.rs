@@ -22,7 +22,7 @@ corpuscle_gpu::declare! {
         /// What diffuses is relative humidity.
         pub const RELATIVE: u32 = 32;
         /// There is a search for air of low utility.
-        pub const TENDS: u32 = 64;
+        pub const FINDS_LOW_UTILITY: u32 = 64;
         /// No air enters or leaves.
         pub const IS_CLOSED: u32 = 128;
         /// Conductivities of air and solid are harmonically averaged; else arithmetically.

@@ -134,7 +134,7 @@ impl Dew {
             return;
         }
         self.conduction.connect(self.solids.nodes(), &links);
-        self.renew_heat_network();
+        self.rebuild_heat_network();
     }
 
     fn add_wall(&mut self, number: usize, body: &bodies::Body, links: &mut Vec<(u32, u32, f64)>) {

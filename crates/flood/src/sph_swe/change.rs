@@ -49,7 +49,7 @@ impl SphSweFlood {
                 return Err(setup("rain and held levels are for scheme voronoi"));
             }
         }
-        self.renew_gpu()
+        self.update_gpu()
     }
 
     /// Gives an inflow another discharge from now on, by the time and what the scene says.
@@ -111,7 +111,7 @@ impl SphSweFlood {
     }
 
     /// Uploads the changed state and parameters to a GPU that takes the steps.
-    pub(super) fn renew_gpu(&mut self) -> Result<(), ModelError> {
+    pub(super) fn update_gpu(&mut self) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         if let Some(on_gpu) = &self.on_gpu {
             let gpu = on_gpu.gpu().clone();

@@ -176,7 +176,7 @@ impl Model for SphSweFlood {
         self.apply_overrides()?;
         self.arrange();
         if is_changed {
-            return self.renew_gpu();
+            return self.update_gpu();
         }
         #[cfg(feature = "gpu")]
         self.upload_to_gpu().map_err(|error| ModelError::Device(error.to_string()))?;

@@ -417,7 +417,7 @@ impl VoronoiFlood {
         }
         loop {
             self.solver.columns.copy_from_slice(&start::columns(&self.solver.mesh, bodies));
-            self.solver.renew();
+            self.solver.update_water();
             let missing = self.solver.missing_tiles();
             if missing.is_empty() {
                 break;
@@ -458,7 +458,7 @@ impl VoronoiFlood {
             let what = "There is no water: give [[flood.water]], [[flood.inflow]], [flood.rain], [[flood.stage]], or an edge with a stage.";
             self.state.warnings.push(what.into());
         }
-        let step = self.solver.renew();
+        let step = self.solver.update_water();
         self.state.time_step = FIRST_STEP * self.limit_time_step(step);
         let columns = self.solver.columns.clone();
         *self.solver.before_mut() = columns;

@@ -158,7 +158,7 @@ impl Solver {
     }
 
     /// Finds depth, level and velocity of all cells; the longest time step that all can take, s.
-    pub fn renew(&mut self) -> f64 {
+    pub fn update_water(&mut self) -> f64 {
         let Self { mesh, columns, water, .. } = self;
         let cells = columns.par_chunks_mut(CHUNK).zip(water.par_chunks_mut(CHUNK)).enumerate();
         cells.for_each(|(chunk, (columns, water))| {
@@ -284,7 +284,7 @@ impl Solver {
     pub fn take_back(&mut self) {
         self.broken = false;
         self.columns.copy_from_slice(&self.before);
-        self.renew();
+        self.update_water();
     }
 
     /// Number of wet cells of all processes.

@@ -66,7 +66,7 @@ impl Solver {
 
     fn run(&mut self, until: f64) -> usize {
         let mut time = 0.0;
-        let mut step = 0.1 * self.renew();
+        let mut step = 0.1 * self.update_water();
         let mut steps = 0;
         while time < until {
             let taken = step.min(until - time);
@@ -157,7 +157,7 @@ fn sheets_run_at_the_velocity_of_normal_flow() {
 fn a_first_stage_that_comes_to_no_number_is_told() {
     let mut solver = solver([20.0, 10.0], [false; 2], 1.0, 1, 0.0, &Function(|_, _| 0.0, [0.0; 2]));
     solver.fill(|area, _, _, _| Column { volume: area, momentum: [0.0; 2] });
-    let step = 0.1 * solver.renew();
+    let step = 0.1 * solver.update_water();
     let now = |stage: usize, _| if stage == 0 { Now::Discharge(f64::NAN) } else { Now::Wall };
     solver.step(step, &now, &mut |_, _: BorderFlux| (), &mut |_, _| ());
     assert!(solver.is_broken() && solver.broken_cell().is_some());

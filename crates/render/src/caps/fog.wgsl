@@ -54,7 +54,7 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     if from_middle > 1.0 || !is_on_surface(caps[corner.number], corner, depth) {
         discard;
     }
-    // A bell whose sum over all samples is 1.
-    let bell = 3.0 / (PI * corner.spread * corner.spread) * (1.0 - from_middle) * (1.0 - from_middle);
-    return vec4f(corner.area * bell, 0.0, 0.0, 1.0);
+    // Weight of a kernel whose sum over all samples is 1.
+    let weight = 3.0 / (PI * corner.spread * corner.spread) * (1.0 - from_middle) * (1.0 - from_middle);
+    return vec4f(corner.area * weight, 0.0, 0.0, 1.0);
 }

@@ -27,8 +27,8 @@ const MORE: f64 = 0.05;
 const START: f64 = 1e-10;
 
 /// Mean radii between which drops are apart, and between which they merge, m.
-const APART: [f64; 2] = [3e-6, 5e-6];
-const MERGING: [f64; 2] = [2e-4, 5e-4];
+const APART_RADII: [f64; 2] = [3e-6, 5e-6];
+const MERGING_RADII: [f64; 2] = [2e-4, 5e-4];
 
 /// Drops that began later are smaller than this part of the mean radius.
 const LATER: f64 = 0.25;
@@ -74,12 +74,12 @@ fn grow(seed: u64, patches: u32) -> Grown {
         let radius = mean_radius(&drops);
         let is_in = |range: [f64; 2]| radius >= range[0] && radius < range[1];
         let point = [thickness.ln(), radius.ln()];
-        if is_in(APART) {
+        if is_in(APART_RADII) {
             apart.push(point);
-        } else if is_in(MERGING) {
+        } else if is_in(MERGING_RADII) {
             merging.push(point);
             covered.push(covered_by_first(&drops, radius));
-        } else if radius >= MERGING[1] {
+        } else if radius >= MERGING_RADII[1] {
             let mean = covered.iter().sum::<f64>() / covered.len() as f64;
             return Grown { apart: fitted_slope(&apart), merging: fitted_slope(&merging), covered: mean };
         }

@@ -286,7 +286,7 @@ impl GpuSolver {
     ///
     /// # Errors
     /// As [`GpuSolver::new`].
-    pub fn renew(&mut self, input: &Input<'_>) -> Result<(), GpuError> {
+    pub fn upload_again(&mut self, input: &Input<'_>) -> Result<(), GpuError> {
         let gpu = self.batches.gpu();
         (self.memory, self.status) = input.upload(gpu)?;
         self.tasks = self.kernels.iter().map(|kernel| kernel.on(gpu, &self.memory)).collect();

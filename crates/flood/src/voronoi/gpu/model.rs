@@ -294,7 +294,7 @@ impl VoronoiFlood {
 
     fn upload(&self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
         on_gpu.start = self.start();
-        on_gpu.solver.renew(&self.input()).map_err(|error| device(&error))
+        on_gpu.solver.upload_again(&self.input()).map_err(|error| device(&error))
     }
 
     /// Downloads the state of the GPU: water, records, time and accounts.
