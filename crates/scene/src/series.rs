@@ -174,8 +174,8 @@ pub(crate) fn check_rows(rows: &[[f64; 2]]) -> Result<(), (usize, String)> {
 
 fn read_csv(file: &Path) -> Result<Table, SceneError> {
     let error = |line, what| SceneError::Series { file: file.to_owned(), line, what };
-    let text = std::fs::read_to_string(file)
-        .map_err(|source| error(None, format!("cannot read this time series: {source}")))?;
+    let text =
+        crate::read_text(file).map_err(|source| error(None, format!("cannot read this time series: {source}")))?;
     let mut rows: Vec<[f64; 2]> = Vec::new();
     let mut lines = Vec::new();
     for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {

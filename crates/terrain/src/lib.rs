@@ -32,8 +32,8 @@ pub use grid::MapGrid;
 pub use mosaic::merge;
 pub use polygons::{Polygon, polygons_of_geojson};
 pub use raster::{
-    MapBox, Photo, Raster, RasterField, Survey, Window, hold_in_memory, in_memory, read_raster, read_raster_part,
-    survey, write_geotiff, write_raster, write_raster_exactly,
+    MapBox, Photo, Raster, RasterField, Survey, Window, hold_in_memory, in_memory, keep_in_memory, read_raster,
+    read_raster_part, survey, write_geotiff, write_raster, write_raster_exactly,
 };
 pub use summary::{Summary, summarize};
 pub use surface::GroundPatches;

@@ -3,7 +3,7 @@
 use super::{Outline, Outlines, shapefile};
 use crate::limits::check_inside;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Circle, Flood as Settings, Obstacle};
+use corpuscle_scene::{Circle, Flood as Settings, Obstacle, read_file, read_text};
 use corpuscle_terrain::{Bounds, Polygon, Terrain, polygons_of_geojson};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -105,21 +105,21 @@ fn extension(path: &Path) -> String {
 fn read(path: &Path, terrain: &Terrain) -> Result<Vec<Polygon>, String> {
     match extension(path).as_str() {
         "geojson" | "json" => geojson(path, terrain),
-        "shp" => shapefile::polygons(&std::fs::read(path).map_err(|error| error.to_string())?),
+        "shp" => shapefile::polygons(&read_file(path).map_err(|error| error.to_string())?),
         "csv" => csv(path),
         other => Err(format!("'.{other}' is no format of polygons here; give .geojson, .shp or .csv")),
     }
 }
 
 fn geojson(path: &Path, terrain: &Terrain) -> Result<Vec<Polygon>, String> {
-    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    let text = read_text(path).map_err(|error| error.to_string())?;
     Ok(terrain.polygons_to_own(polygons_of_geojson(&text)?))
 }
 
 /// Corners in columns x and y; where there is a column `name`, each name is a polygon.
 fn csv(path: &Path) -> Result<Vec<Polygon>, String> {
-    let reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path);
-    let mut reader = reader.map_err(|error| error.to_string())?;
+    let text = read_file(path).map_err(|error| error.to_string())?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
     let headers = reader.headers().map_err(|error| error.to_string())?.clone();
     let column = |name: &str| headers.iter().position(|header| header.eq_ignore_ascii_case(name));
     let (Some(x), Some(y)) = (column("x"), column("y")) else {

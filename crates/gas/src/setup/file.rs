@@ -2,7 +2,7 @@
 
 use super::Ball;
 use corpuscle_model::ModelError;
-use std::fs;
+use corpuscle_scene::read_text;
 use std::path::Path;
 
 /// Names of columns that say the same: those of `corpuscle run --frames csv` first.
@@ -17,7 +17,7 @@ const NAME: &[&str] = &["set", "species", "name"];
 /// [`ModelError::Setup`] with file and line.
 pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<Ball<D>>, ModelError> {
     let wrong = |what: String| ModelError::Setup(format!("{}{what}", path.display()));
-    let text = fs::read_to_string(path).map_err(|error| wrong(format!(": gas.start_file cannot be read: {error}")))?;
+    let text = read_text(path).map_err(|error| wrong(format!(": gas.start_file cannot be read: {error}")))?;
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     let table = match ending.as_str() {
         "xyz" | "extxyz" => Table::of_xyz(&text),

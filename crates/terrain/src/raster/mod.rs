@@ -9,8 +9,8 @@ mod survey;
 mod window;
 mod write;
 
+pub use corpuscle_scene::{hold_in_memory, in_memory, keep_in_memory};
 pub use field::RasterField;
-pub use memory::{hold_in_memory, in_memory};
 pub use photo::Photo;
 pub use survey::{Survey, survey};
 pub use window::{MapBox, Window};
