@@ -16,8 +16,10 @@ pub(super) enum ToWorker {
     Backend(Backend),
     /// A command.
     Command(Command),
-    /// A raster file to be held in memory under a path.
+    /// A file to be held in memory under a path.
     File(PathBuf, Vec<u8>),
+    /// Free all files in memory but those in this folder.
+    KeepFiles(PathBuf),
     /// The last snapshot was taken: another may be sent.
     Taken,
 }
@@ -30,6 +32,7 @@ pub(super) enum FromWorker {
     NotChanged(String),
     Ended,
     Fault(String),
+    Broken(String),
     Snapshot(Arc<Snapshot>),
 }
 
@@ -73,6 +76,7 @@ impl FromWorker {
             Event::Filmed(_) => return None,
             Event::Ended => Self::Ended,
             Event::Fault(what) => Self::Fault(what),
+            Event::Broken(what) => Self::Broken(what),
         })
     }
 }

@@ -33,6 +33,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[cfg(not(target_arch = "wasm32"))]
 pub use thread::Physics;
 #[cfg(target_arch = "wasm32")]
+pub(crate) use worker::FileHolder;
+#[cfg(target_arch = "wasm32")]
 pub use worker::{Physics, serve};
 
 /// Duration of a whole scene at the default pace, s.
@@ -104,6 +106,8 @@ pub enum Event {
     Ended,
     /// The scene broke down, and is paused; the last snapshot is valid.
     Fault(String),
+    /// An internal error ended the scene, or its opening; another can be opened.
+    Broken(String),
 }
 
 /// A scene that is open at its start.

@@ -107,7 +107,7 @@ impl Runner {
     #[cfg_attr(target_arch = "wasm32", expect(dead_code, reason = "in a browser a panic ends the worker"))]
     pub fn broken(&mut self) {
         self.running = None;
-        self.send(Event::Fault("an internal error stopped the scene; open it again".into()));
+        self.send(Event::Broken("an internal error stopped the scene; open it again".into()));
     }
 
     /// Does what a command says. To be awaited to its end.

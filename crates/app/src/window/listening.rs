@@ -1,6 +1,6 @@
 //! Events of the physics thread and pictures of the offscreen renderer.
 
-use super::Window;
+use super::{Pending, Window};
 use crate::offscreen::RenderResult;
 use crate::physics::Event;
 
@@ -12,13 +12,18 @@ impl Window {
             match event {
                 Event::Opened(opened) => self.take(*opened),
                 Event::Refused(what) => {
-                    self.pending = None;
+                    self.not_opened();
                     self.fault = Some(what);
                 }
                 Event::NotChanged(what) => self.fault = Some(what),
                 Event::Filmed(film) => self.filmed(film),
                 Event::Ended => self.stopped(),
                 Event::Fault(what) => {
+                    self.fault = Some(what);
+                    self.stopped();
+                }
+                Event::Broken(what) => {
+                    self.not_opened();
                     self.fault = Some(what);
                     self.stopped();
                 }
@@ -36,6 +41,11 @@ impl Window {
             self.physics.follow(open.picked.is_some() || open.clicked.is_some());
             open.snapshot = Some(newest);
         }
+    }
+
+    /// Nothing is being opened any more but a file that is still being read.
+    fn not_opened(&mut self) {
+        self.pending.take_if(|pending| !matches!(pending, Pending::Dropped(_)));
     }
 
     fn stopped(&mut self) {

@@ -6,9 +6,10 @@ use crate::physics::{Backend, Command, Event};
 use crate::snapshot::{Snapshot, Wake};
 use crate::view_state::ViewState;
 use corpuscle::gpu::Gpu;
+use corpuscle::terrain::{in_memory, keep_in_memory};
 use std::cell::RefCell;
 use std::collections::VecDeque;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
@@ -17,8 +18,8 @@ use web_sys::{MessageEvent, Worker, WorkerOptions, WorkerType};
 
 /// The script of the worker, beside the page.
 const SCRIPT: &str = "worker.js";
-const BROKEN: &str = "the scene was ended: it took more memory than a page has (4 GB), or an internal error stopped it. Make it smaller, or run it \
-                      with the program (corpuscle view)";
+const BROKEN: &str = "the scene was ended: it took more memory than a page has (4 GB), or an internal error stopped it. Open it again or make \
+                      it smaller, or run it with the program (corpuscle view)";
 
 /// The handle of the worker. Dropping it ends the worker.
 pub struct Physics {
@@ -26,12 +27,22 @@ pub struct Physics {
     received: Rc<RefCell<Received>>,
 }
 
-/// The worker, and what calls back when it says something.
+/// The link to the worker. One that broke down is replaced when the next scene is opened.
 struct Link {
+    worker: RunningWorker,
+    backend: Backend,
+    wake: Wake,
+    received: Rc<RefCell<Received>>,
+    /// Files that the worker holds, which are also in the page's memory.
+    held: Vec<PathBuf>,
+}
+
+/// A worker, and what calls back when it says something. Dropping it ends the worker.
+struct RunningWorker {
     worker: Worker,
     _callbacks: [Closure<dyn FnMut(MessageEvent)>; 2],
     /// Messages that wait until the worker has started; none once it has.
-    waiting: Option<Vec<Vec<u8>>>,
+    waiting: Rc<RefCell<Option<Vec<Vec<u8>>>>>,
 }
 
 /// What came from the worker.
@@ -41,6 +52,8 @@ struct Received {
     newest: Option<Arc<Snapshot>>,
     /// What the worker is to be told.
     answers: Vec<ToWorker>,
+    /// True once the worker broke down: it takes no more messages.
+    is_broken: bool,
 }
 
 impl Physics {
@@ -50,14 +63,16 @@ impl Physics {
     /// Where the browser starts none.
     pub(crate) fn start(_: Option<&Gpu>, _: BackgroundDevice, backend: Backend, wake: Wake) -> std::io::Result<Self> {
         let received = Rc::<RefCell<Received>>::default();
-        let link = start(&received, &wake).map_err(|error| std::io::Error::other(format!("{error:?}")))?;
-        link.borrow_mut().send(&ToWorker::Backend(backend));
-        Ok(Self { link, received })
+        let worker = RunningWorker::start(&received, &wake);
+        let worker = worker.map_err(|error| std::io::Error::other(format!("{error:?}")))?;
+        let link = Link { worker, backend, wake, received: received.clone(), held: Vec::new() };
+        link.send(&ToWorker::Backend(backend));
+        Ok(Self { link: Rc::new(RefCell::new(link)), received })
     }
 
     /// Sends a command. Never waits.
     pub fn send(&self, command: Command) {
-        self.link.borrow_mut().send(&ToWorker::Command(command));
+        self.link.borrow_mut().command(command);
     }
 
     /// What gives files to the worker.
@@ -79,14 +94,11 @@ impl Physics {
 
     /// The newest snapshot.
     pub fn newest(&self) -> Option<Arc<Snapshot>> {
-        let newest = {
-            let mut received = self.received.borrow_mut();
-            for answer in std::mem::take(&mut received.answers) {
-                self.link.borrow_mut().send(&answer);
-            }
-            received.newest.clone()
-        };
-        newest
+        let answers = std::mem::take(&mut self.received.borrow_mut().answers);
+        for answer in answers {
+            self.link.borrow_mut().send(&answer);
+        }
+        self.received.borrow().newest.clone()
     }
 }
 
@@ -94,31 +106,70 @@ impl Physics {
 pub(crate) struct FileHolder(Rc<RefCell<Link>>);
 
 impl FileHolder {
-    /// Has the worker hold a raster file in memory under a path.
+    /// Has the worker, and the page, free all files but those in a folder.
+    pub fn keep(&self, folder: &Path) {
+        let mut link = self.0.borrow_mut();
+        if link.held.iter().any(|path| !path.starts_with(folder)) {
+            link.held.retain(|path| path.starts_with(folder));
+            link.send(&ToWorker::KeepFiles(folder.to_owned()));
+            keep_in_memory(folder);
+        }
+    }
+
+    /// Has the worker hold a file in memory under a path.
     pub fn hold(&self, path: PathBuf, bytes: &[u8]) {
-        self.0.borrow_mut().send(&ToWorker::File(path, bytes.to_vec()));
+        let mut link = self.0.borrow_mut();
+        link.send(&ToWorker::File(path.clone(), bytes.to_vec()));
+        link.held.push(path);
     }
 }
 
-impl Drop for Physics {
+impl Drop for RunningWorker {
     fn drop(&mut self) {
-        self.link.borrow().worker.terminate();
+        // What it has said already must not call what is gone.
+        self.worker.set_onmessage(None);
+        self.worker.set_onerror(None);
+        self.worker.terminate();
     }
 }
 
 impl Link {
-    fn send(&mut self, message: &ToWorker) {
-        let Ok(bytes) = bytes(message) else { return };
-        match &mut self.waiting {
-            Some(waiting) => waiting.push(bytes),
-            None => post(&self.worker, &bytes),
+    /// Sends a command; a scene is opened by a new worker where the one before broke down.
+    fn command(&mut self, command: Command) {
+        if self.received.borrow().is_broken {
+            match command {
+                Command::Open(..) => {
+                    if let Err(error) = self.restart() {
+                        let what =
+                            format!("the browser starts no worker for the physics: {error:?}; load the page again");
+                        return self.received.borrow_mut().events.push_back(FromWorker::Broken(what));
+                    }
+                }
+                Command::Play | Command::Step(_) => {
+                    return self.received.borrow_mut().events.push_back(FromWorker::Broken(BROKEN.into()));
+                }
+                _ => return,
+            }
         }
+        self.send(&ToWorker::Command(command));
     }
 
-    /// Sends what has waited.
-    fn started(&mut self) {
-        for bytes in self.waiting.take().into_iter().flatten() {
-            post(&self.worker, &bytes);
+    /// Starts a new worker with the backend and the files of the one before.
+    fn restart(&mut self) -> Result<(), JsValue> {
+        self.worker = RunningWorker::start(&self.received, &self.wake)?;
+        *self.received.borrow_mut() = Received::default();
+        self.send(&ToWorker::Backend(self.backend));
+        let held = self.held.iter().filter_map(|path| Some((path, in_memory(path)?)));
+        let files: Vec<_> = held.map(|(path, bytes)| ToWorker::File(path.clone(), bytes.to_vec())).collect();
+        files.iter().for_each(|file| self.send(file));
+        Ok(())
+    }
+
+    fn send(&self, message: &ToWorker) {
+        let Ok(bytes) = bytes(message) else { return };
+        match &mut *self.worker.waiting.borrow_mut() {
+            Some(waiting) => waiting.push(bytes),
+            None => post(&self.worker.worker, &bytes),
         }
     }
 }
@@ -129,41 +180,41 @@ fn post(worker: &Worker, bytes: &[u8]) {
     let _ = worker.post_message_with_transfer(&array, &web_sys::js_sys::Array::of1(&array.buffer()));
 }
 
-/// Starts a worker that puts what it says into `received`.
-fn start(received: &Rc<RefCell<Received>>, wake: &Wake) -> Result<Rc<RefCell<Link>>, JsValue> {
-    let options = WorkerOptions::new();
-    options.set_type(WorkerType::Module);
-    let worker = Worker::new_with_options(SCRIPT, &options)?;
-    let link = Rc::<RefCell<Option<Rc<RefCell<Link>>>>>::default();
-    let heard = {
-        let (received, wake, link) = (received.clone(), wake.clone(), link.clone());
-        Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
-            match event.data().dyn_into::<Uint8Array>() {
-                Ok(bytes) => received.borrow_mut().take(&bytes.to_vec()),
-                // What is no message of bytes says that the worker has started.
-                Err(_) => {
-                    if let Some(link) = &*link.borrow() {
-                        link.borrow_mut().started();
+impl RunningWorker {
+    /// Starts a worker that puts what it says into `received`.
+    fn start(received: &Rc<RefCell<Received>>, wake: &Wake) -> Result<Self, JsValue> {
+        let options = WorkerOptions::new();
+        options.set_type(WorkerType::Module);
+        let worker = Worker::new_with_options(SCRIPT, &options)?;
+        let waiting = Rc::new(RefCell::new(Some(Vec::<Vec<u8>>::new())));
+        let heard = {
+            let (received, wake, waiting, worker) = (received.clone(), wake.clone(), waiting.clone(), worker.clone());
+            Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
+                match event.data().dyn_into::<Uint8Array>() {
+                    Ok(bytes) => received.borrow_mut().take(&bytes.to_vec()),
+                    // What is no message of bytes says that the worker has started.
+                    Err(_) => {
+                        for bytes in waiting.take().into_iter().flatten() {
+                            post(&worker, &bytes);
+                        }
                     }
                 }
-            }
-            wake();
-        })
-    };
-    let failed = {
-        let (received, wake) = (received.clone(), wake.clone());
-        Closure::<dyn FnMut(MessageEvent)>::new(move |_| {
-            received.borrow_mut().events.push_back(FromWorker::Fault(BROKEN.into()));
-            wake();
-        })
-    };
-    worker.set_onmessage(Some(heard.as_ref().unchecked_ref()));
-    worker.set_onerror(Some(failed.as_ref().unchecked_ref()));
-    // The worker runs the same program: it need not be compiled again.
-    worker.post_message(&wasm_bindgen::module())?;
-    let started = Rc::new(RefCell::new(Link { worker, _callbacks: [heard, failed], waiting: Some(Vec::new()) }));
-    *link.borrow_mut() = Some(started.clone());
-    Ok(started)
+                wake();
+            })
+        };
+        let failed = {
+            let (received, wake) = (received.clone(), wake.clone());
+            Closure::<dyn FnMut(MessageEvent)>::new(move |_| {
+                received.borrow_mut().broke();
+                wake();
+            })
+        };
+        worker.set_onmessage(Some(heard.as_ref().unchecked_ref()));
+        worker.set_onerror(Some(failed.as_ref().unchecked_ref()));
+        // The worker runs the same program: it need not be compiled again.
+        worker.post_message(&wasm_bindgen::module())?;
+        Ok(Self { worker, _callbacks: [heard, failed], waiting })
+    }
 }
 
 impl Received {
@@ -179,6 +230,14 @@ impl Received {
             Err(error) => self.events.push_back(FromWorker::Fault(error)),
         }
     }
+
+    /// The worker broke down, which is told once.
+    fn broke(&mut self) {
+        if !self.is_broken {
+            self.is_broken = true;
+            self.events.push_back(FromWorker::Broken(BROKEN.into()));
+        }
+    }
 }
 
 /// The event of a message.
@@ -192,6 +251,7 @@ fn event(message: FromWorker) -> Option<Event> {
         FromWorker::NotChanged(what) => Event::NotChanged(what),
         FromWorker::Ended => Event::Ended,
         FromWorker::Fault(what) => Event::Fault(what),
+        FromWorker::Broken(what) => Event::Broken(what),
         FromWorker::Snapshot(_) => return None,
     })
 }

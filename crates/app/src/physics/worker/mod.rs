@@ -3,5 +3,6 @@
 mod handle;
 mod serve;
 
+pub(crate) use handle::FileHolder;
 pub use handle::Physics;
 pub use serve::serve;

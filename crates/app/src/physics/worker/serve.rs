@@ -5,7 +5,7 @@ use crate::physics::runner::Runner;
 use crate::physics::{Backend, Event, Shared};
 use crate::snapshot::Snapshot;
 use corpuscle::Cpu;
-use corpuscle::terrain::hold_in_memory;
+use corpuscle::terrain::{hold_in_memory, keep_in_memory};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -177,6 +177,7 @@ async fn take(runner: &mut Runner, message: ToWorker) {
         ToWorker::Backend(backend) => runner.backend = backend,
         ToWorker::Command(command) => runner.take(command).await,
         ToWorker::File(path, bytes) => hold_in_memory(path, &bytes),
+        ToWorker::KeepFiles(folder) => keep_in_memory(&folder),
         ToWorker::Taken => {}
     }
 }
