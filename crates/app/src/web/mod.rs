@@ -83,8 +83,8 @@ struct App {
     gpu: Option<Gpu>,
     /// True once the device was found lost.
     is_lost: bool,
-    /// The link to what is shown, as it stands in the page's address.
-    link: Option<String>,
+    /// The link that stands in the page's address; empty without one.
+    link: String,
     meter: Option<Meter>,
     measured: Arc<Mutex<Option<Measurement>>>,
 }
@@ -108,7 +108,10 @@ impl App {
         if let Some(fault) = fault {
             window.show_error(fault);
         }
-        if loss::take_note() {
+        let link = hash.trim_start_matches('#').to_owned();
+        if loss::take_note() && link.is_empty() {
+            window.show_error("The graphics device was lost: open the scene again, or drop its files again.".into());
+        } else if loss::take_note() {
             window.notify("The graphics device was lost: the scene was opened again.".into());
         }
         if words.is_embedded {
@@ -119,7 +122,20 @@ impl App {
         }
         let measured = Arc::<Mutex<Option<Measurement>>>::default();
         let meter = words.measure.map(|seconds| Meter::new(seconds, measured.clone()));
-        Ok(Self { window, gpu, is_lost: false, link: None, meter, measured })
+        Ok(Self { window, gpu, is_lost: false, link, meter, measured })
+    }
+
+    /// Has the page's address name the open scene with its changes; a scene without a link leaves no link of another there.
+    fn update_link(&mut self) {
+        if !self.window.has_scene() {
+            return;
+        }
+        let link = self.window.link().unwrap_or_default();
+        if link != self.link {
+            self.link = link;
+            // A page that may not change its address stays as it is.
+            let _ = show_link(&self.link);
+        }
     }
 
     fn state(&self) -> Value {
@@ -166,12 +182,7 @@ impl eframe::App for App {
         {
             self.meter = None;
         }
-        let link = self.window.link();
-        if link.is_some() && link != self.link {
-            self.link = link;
-            // A page that may not change its address stays as it is.
-            let _ = self.link.as_deref().map_or(Ok(()), show_link);
-        }
+        self.update_link();
     }
 
     fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
@@ -181,6 +192,11 @@ impl eframe::App for App {
 
 /// Puts a link into the page's address.
 fn show_link(link: &str) -> Result<(), JsValue> {
-    let history = web_sys::window().ok_or("there is no page")?.history()?;
-    history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("#{link}")))
+    let window = web_sys::window().ok_or("there is no page")?;
+    let location = window.location();
+    let address = match link {
+        "" => format!("{}{}", location.pathname()?, location.search()?),
+        link => format!("#{link}"),
+    };
+    window.history()?.replace_state_with_url(&JsValue::NULL, "", Some(&address))
 }

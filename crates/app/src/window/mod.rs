@@ -214,6 +214,11 @@ impl Window {
         self.pending.is_some()
     }
 
+    /// True where a scene or run is open.
+    pub fn has_scene(&self) -> bool {
+        self.open.is_some()
+    }
+
     /// What takes the steps and why, as text; none without a scene that is computed.
     pub fn computed_on(&self) -> Option<&str> {
         self.open.as_ref()?.computed_on.as_deref()
