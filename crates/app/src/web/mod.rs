@@ -60,7 +60,7 @@ impl Page {
         setup.device_descriptor = Arc::new(Gpu::request);
         let wgpu_options =
             egui_wgpu::WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..Default::default() };
-        let renderer = if has_webgpu { Renderer::Wgpu } else { Renderer::Glow };
+        let renderer = if has_webgpu && !loss::without_webgpu() { Renderer::Wgpu } else { Renderer::Glow };
         let options = eframe::WebOptions { renderer, wgpu_options, dithering: false, ..Default::default() };
         let create = move |context: &eframe::CreationContext<'_>| {
             context.egui_ctx.add_plugin(elements);
@@ -172,9 +172,7 @@ impl eframe::App for App {
             && !self.is_lost
         {
             self.is_lost = true;
-            if !loss::open_again() {
-                self.window.show_error(error.to_string());
-            }
+            loss::open_again(&error.to_string());
         }
         self.window.ui(ui);
         if let Some(meter) = &mut self.meter
