@@ -1,7 +1,7 @@
 //! Handling of keys and of the controls of the strip.
 
 use super::open::QUALITIES;
-use super::{Source, Window};
+use super::{Panels, Source, Window};
 use crate::physics::{Command, default_pace};
 use crate::transport::Pressed;
 use egui::{Key, Ui};
@@ -18,14 +18,16 @@ impl Window {
                 self.press(what);
             }
         }
-        if pressed(Key::G) {
-            self.panels.toggle(|panels| &mut panels.scenes, self.is_narrow);
-        }
-        if pressed(Key::P) {
-            self.panels.toggle(|panels| &mut panels.parameters, self.is_narrow);
-        }
-        if pressed(Key::L) {
-            self.panels.toggle(|panels| &mut panels.plots, self.is_narrow);
+        let panels: [(Key, fn(&mut Panels) -> &mut bool); 3] = [
+            (Key::G, |panels| &mut panels.scenes),
+            (Key::P, |panels| &mut panels.parameters),
+            (Key::L, |panels| &mut panels.plots),
+        ];
+        // Within another page the picture stays alone.
+        for (key, panel) in panels.into_iter().filter(|_| !self.is_embedded) {
+            if pressed(key) {
+                self.panels.toggle(panel, self.is_narrow);
+            }
         }
         if cfg!(feature = "film") && pressed(Key::V) {
             self.film();
