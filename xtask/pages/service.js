@@ -1,5 +1,7 @@
 // Keeps the site for use without a network: all files once the first page is shown, replaced as a whole by the next version.
-const CACHE = "corpuscle-{version}";
+// Caches belong to the whole origin, which may have several sites.
+const OWN = `corpuscle ${self.registration.scope} `;
+const CACHE = `${OWN}{version}`;
 const FILES = [
 {files}];
 
@@ -8,7 +10,7 @@ self.addEventListener("install", (event) => {
 });
 
 self.addEventListener("activate", (event) => {
-  const old = (names) => Promise.all(names.filter((name) => name.startsWith("corpuscle-") && name !== CACHE).map((name) => caches.delete(name)));
+  const old = (names) => Promise.all(names.filter((name) => name.startsWith(OWN) && name !== CACHE).map((name) => caches.delete(name)));
   event.waitUntil(caches.keys().then(old).then(() => self.clients.claim()));
 });
 
