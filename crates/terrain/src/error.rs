@@ -70,8 +70,8 @@ pub enum TerrainError {
     Shape(String),
     /// The scene has terrain from a server, which must be fetched first.
     #[error(
-        "the terrain of [terrain.fetch] comes over a network, which this program was built without; fetch it elsewhere \
-         with `corpuscle terrain fetch`, and name the file in [terrain.file]"
+        "the terrain of [terrain.fetch] comes over a network, which neither a page of a browser nor a program built \
+         without feature `fetch` reads; fetch it with the program (`corpuscle terrain fetch`), and name the file in [terrain.file]"
     )]
     NotFetched,
     /// A raster cannot be written.

@@ -2,12 +2,16 @@
 
 use super::write as write_file;
 use anyhow::{Context, Result};
-use corpuscle_scene::{Builtin, Scene, kinds};
+use corpuscle_scene::{Builtin, Scene, Terrain, kinds};
 use std::fmt::Write;
 use std::path::Path;
 
 /// The scenes that are live on the start page.
 const LIVE: [&str; 3] = ["gas/maxwell", "dew/pane", "flood/valley"];
+
+/// What the gallery says of a scene that a page refuses.
+const REFUSED: &str =
+    "<span class=\"refused\">Not in a page: its terrain is fetched over a network. It runs with the program.</span>";
 
 /// Writes the page with its pictures.
 ///
@@ -36,12 +40,16 @@ struct Card {
     title: String,
     sentence: String,
     image: String,
+    /// True where a page refuses it: its terrain is fetched over a network.
+    is_refused: bool,
 }
 
 impl Card {
     /// The card of a scene; its picture is copied.
     fn of(scene: Builtin, root: &Path, out: &Path) -> Result<Self> {
-        let Scene { title, description, .. } = Scene::parse(scene.text, scene.name, &[])?;
+        let parsed = Scene::parse(scene.text, scene.name, &[])?;
+        let is_refused = parsed.flood().is_some_and(|flood| matches!(flood.terrain, Terrain::Fetch(_)));
+        let Scene { title, description, .. } = parsed;
         let stem = format!("scene-{}", scene.name.replace('/', "-"));
         let folder = root.join("docs/src/images");
         let found =
@@ -50,14 +58,15 @@ impl Card {
         write_file(&out.join("images").join(&image), &std::fs::read(folder.join(&image))?)?;
         let description = description.split_whitespace().collect::<Vec<_>>().join(" ");
         let sentence = description.split_inclusive(". ").next().unwrap_or_default().trim_end().to_owned();
-        Ok(Self { name: scene.name, title, sentence, image })
+        Ok(Self { name: scene.name, title, sentence, image, is_refused })
     }
 
     fn html(&self) -> String {
         let Self { name, image, .. } = self;
         let (title, sentence) = (escaped(&self.title), escaped(&self.sentence));
+        let refused = if self.is_refused { REFUSED } else { "" };
         format!(
-            "<li><a href=\"app/#{name}\"><img src=\"images/{image}\" alt=\"\" loading=\"lazy\"><strong>{title}</strong><span>{sentence}</span></a></li>"
+            "<li><a href=\"app/#{name}\"><img src=\"images/{image}\" alt=\"\" loading=\"lazy\"><strong>{title}</strong><span>{sentence}</span>{refused}</a></li>"
         )
     }
 
