@@ -2,6 +2,9 @@
 
 use egui::{Context, Grid, Modal, RichText};
 
+/// The key of films.
+const FILM: &str = "V";
+
 /// Keys and pointer actions, each with its effect.
 const ROWS: [(&str, &str); 19] = [
     ("Space", "play and pause"),
@@ -11,7 +14,7 @@ const ROWS: [(&str, &str); 19] = [
     ("T", "view from above, and back (not for two-dimensional gases)"),
     ("1, 2, 3", "quality: automatic, simple, full"),
     ("S", "save a still of 1920 x 1080 pixels"),
-    ("V", "start and end a film"),
+    (FILM, "start and end a film"),
     ("G", "scenes"),
     ("P", "parameters"),
     ("L", "plots"),
@@ -32,7 +35,7 @@ pub fn list(context: &Context) -> bool {
         ui.label(RichText::new("Keys and pointer").heading());
         ui.add_space(8.0);
         Grid::new("keys").num_columns(2).spacing([24.0, 7.0]).show(ui, |ui| {
-            for (key, what) in ROWS {
+            for (key, what) in ROWS.into_iter().filter(|(key, _)| cfg!(feature = "film") || *key != FILM) {
                 ui.label(RichText::new(key).text_style(egui::TextStyle::Name(crate::style::STRONG.into())));
                 ui.label(what);
                 ui.end_row();
