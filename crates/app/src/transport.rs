@@ -61,7 +61,7 @@ impl Transport<'_> {
             press(icons::button(ui, Icon::Restart, "Restart", "R").clicked(), Pressed::Restart);
             press(icons::sized(ui, icon, name, "Space", 36.0, true).clicked(), Pressed::Play);
             press(icons::button(ui, Icon::Step, "One step", "right arrow").clicked(), Pressed::Step);
-            if let Some(times) = (!self.is_narrow).then(|| self.speed(ui)).flatten() {
+            if let Some(times) = (!self.is_narrow).then(|| speed(ui, self.times)).flatten() {
                 pressed = Some(Pressed::Pace(times));
             }
             ui.add_space(6.0);
@@ -75,20 +75,6 @@ impl Transport<'_> {
             });
         });
         pressed
-    }
-
-    /// Shows the slider of the speed; returns the multiple chosen.
-    fn speed(&self, ui: &mut Ui) -> Option<f64> {
-        ui.add_space(6.0);
-        let mut times = self.times;
-        let slider = Slider::new(&mut times, PACES[0]..=PACES[1])
-            .logarithmic(true)
-            .custom_formatter(|times, _| format!("{} x", text::short_number(times)))
-            .custom_parser(|words| words.trim_end_matches(['x', ' ']).parse().ok());
-        ui.spacing_mut().slider_width = 90.0;
-        let slider = ui.add(slider).on_hover_text("Speed, as a multiple of the scene's default");
-        slider.widget_info(|| WidgetInfo::slider(true, times, "Speed"));
-        slider.changed().then_some(times)
     }
 
     fn time(&self, time: f64) -> String {
@@ -140,4 +126,18 @@ impl Transport<'_> {
         let pointer = response.interact_pointer_pos().filter(|_| self.recorded)?;
         Some(f64::from(((pointer.x - rail.left()) / rail.width()).clamp(0.0, 1.0)) * end)
     }
+}
+
+/// Shows the slider of the speed, a multiple of the scene's default; returns the multiple chosen.
+pub(crate) fn speed(ui: &mut Ui, now: f64) -> Option<f64> {
+    ui.add_space(6.0);
+    let mut times = now;
+    let slider = Slider::new(&mut times, PACES[0]..=PACES[1])
+        .logarithmic(true)
+        .custom_formatter(|times, _| format!("{} x", text::short_number(times)))
+        .custom_parser(|words| words.trim_end_matches(['x', ' ']).parse().ok());
+    ui.spacing_mut().slider_width = 90.0;
+    let slider = ui.add(slider).on_hover_text("Speed, as a multiple of the scene's default");
+    slider.widget_info(|| WidgetInfo::slider(true, times, "Speed"));
+    slider.changed().then_some(times)
 }

@@ -144,6 +144,7 @@ impl App {
             let measures = &snapshot.measures;
             measures.names.iter().cloned().zip(measures.gauges.iter().map(|value| Value::from(*value)))
         });
+        let camera = self.window.camera_offset();
         let measured = *self.measured.lock().unwrap_or_else(PoisonError::into_inner);
         json!({
             "link": self.window.link(),
@@ -154,6 +155,7 @@ impl App {
             "gauges": gauges.collect::<Map<_, _>>(),
             "opening": self.window.is_waiting(),
             "error": self.window.fault(),
+            "camera": camera.map(|camera| json!({ "turn": camera.turn, "shift": camera.shift, "zoom": camera.zoom })),
             "webgpu": self.gpu.is_some(),
             "computed_on": self.window.computed_on(),
             "pictures_per_s": measured.map(|measured| measured.pictures_per_s),
@@ -188,7 +190,7 @@ impl eframe::App for App {
     }
 }
 
-/// Puts a link into the page's address.
+/// Puts a link into the page's address; an empty one leaves an address without any.
 fn show_link(link: &str) -> Result<(), JsValue> {
     let window = web_sys::window().ok_or("there is no page")?;
     let location = window.location();

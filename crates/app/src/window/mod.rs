@@ -22,6 +22,8 @@ use crate::plots::Plots;
 use crate::snapshot::{Snapshot, Wake};
 use crate::transport::PACES;
 use crate::{Screen, help, link, style};
+use corpuscle::pictures::CameraOffset;
+use dropping::ChosenFiles;
 use egui::{Context, Frame, Margin, Panel, Ui};
 use open::{Open, parameters};
 use std::collections::VecDeque;
@@ -60,6 +62,8 @@ pub struct Window {
     is_embedded: bool,
     /// True where the window is narrow.
     is_narrow: bool,
+    /// Files that were chosen to be opened.
+    chosen: ChosenFiles,
 }
 
 /// A scene or run being opened.
@@ -147,6 +151,7 @@ impl Window {
             plays: true,
             is_embedded: false,
             is_narrow: false,
+            chosen: ChosenFiles::default(),
         };
         match start {
             Start::Welcome => {}
@@ -209,14 +214,19 @@ impl Window {
         self.open.as_ref().is_some_and(|open| open.picture.is_complete())
     }
 
+    /// True where a scene or run is open.
+    pub fn has_scene(&self) -> bool {
+        self.open.is_some()
+    }
+
     /// True while a scene or run is being opened.
     pub fn is_waiting(&self) -> bool {
         self.pending.is_some()
     }
 
-    /// True where a scene or run is open.
-    pub fn has_scene(&self) -> bool {
-        self.open.is_some()
+    /// How the user moved the camera.
+    pub fn camera_offset(&self) -> Option<CameraOffset> {
+        Some(self.open.as_ref()?.picture.camera_offset)
     }
 
     /// What takes the steps and why, as text; none without a scene that is computed.
@@ -297,6 +307,7 @@ impl Window {
                 changes: Vec::new(),
             },
         };
+        self.free_dropped(&source);
         let before = self.open.take();
         let (mut times, mut instruments) = (self.speed, Instruments::default());
         if let Some(before) = before.filter(|before| before.source.name == source.name) {

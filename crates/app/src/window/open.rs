@@ -76,6 +76,14 @@ impl Open {
 
     /// Quality, view from above, and the whole scene, for the toolbar.
     pub(super) fn toolbar_camera(&mut self, ui: &mut Ui) {
+        self.toolbar_view(ui);
+        if !self.picture.is_sketch() {
+            self.quality(ui);
+        }
+    }
+
+    /// View from above, and the whole scene.
+    pub(super) fn toolbar_view(&mut self, ui: &mut Ui) {
         let is_flat = self.is_flat();
         let offset = &mut self.picture.camera_offset;
         if !is_flat && icons::toggle(ui, Icon::Plan, "From above", "T", offset.plan).clicked() {
@@ -84,8 +92,16 @@ impl Open {
         if icons::button(ui, Icon::Frame, "Show all", "F").clicked() {
             self.picture.reset();
         }
-        if !self.picture.is_sketch() {
-            self.quality(ui);
+    }
+
+    /// The qualities of the picture, for a menu.
+    pub(super) fn qualities(&mut self, ui: &mut Ui) {
+        if self.picture.is_sketch() {
+            return;
+        }
+        ui.label("Quality");
+        for (quality, name, hint) in QUALITIES {
+            ui.selectable_value(&mut self.picture.quality, quality, name).on_hover_text(hint);
         }
     }
 

@@ -5,8 +5,9 @@ use super::{NOTICE, SHEET, Window};
 use crate::icons::{self, Icon};
 use crate::physics::{Change, Command};
 use crate::spot::SpotAction;
-use crate::transport::{Pressed, Transport};
-use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui, vec2};
+use crate::transport::{self, Pressed, Transport};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Align, Frame, Layout, Margin, Panel, PopupCloseBehavior, RichText, ScrollArea, Ui, vec2};
 
 impl Window {
     pub(super) fn first_page(&mut self, ui: &mut Ui) {
@@ -20,6 +21,7 @@ impl Window {
                     RichText::new("Particle physics: watch a scene and change it while it runs.").size(15.0).weak(),
                 );
                 ui.add_space(6.0);
+                self.open_button(ui);
                 self.show_fault(ui);
                 // Leave room for the scroll bar.
                 ui.set_max_width(ui.available_width() - 16.0);
@@ -136,9 +138,13 @@ impl Window {
         }
         // From the right, so that the title has what is left.
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if is_narrow {
+                self.more(ui);
+            }
             self.toolbar_panels(ui);
             if !is_narrow {
                 ui.separator();
+                self.open_button(ui);
                 self.toolbar_film(ui);
             }
             let draws = self.open.as_ref().is_some_and(|open| !open.picture.is_sketch());
@@ -154,6 +160,30 @@ impl Window {
                 let title = egui::Label::new(RichText::new(&open.scene.title).heading()).truncate();
                 ui.add(title).on_hover_text(open.scene.description.trim());
             });
+        });
+    }
+
+    /// The menu of what a narrow window has no room for.
+    fn more(&mut self, ui: &mut Ui) {
+        let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        MenuButton::new("More").config(config).ui(ui, |ui| {
+            self.open_button(ui);
+            let mut times = None;
+            if let Some(open) = &mut self.open {
+                times = transport::speed(ui, open.times);
+                ui.horizontal(|ui| {
+                    open.toolbar_view(ui);
+                    open.toolbar_instruments(ui);
+                });
+                open.qualities(ui);
+            }
+            if let Some(times) = times {
+                self.press(Pressed::Pace(times));
+            }
+            if ui.button("Help").clicked() {
+                self.help = true;
+                ui.close();
+            }
         });
     }
 

@@ -4,6 +4,10 @@
 mod disk;
 #[cfg(target_arch = "wasm32")]
 mod page;
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) use disk::ChosenFiles;
+#[cfg(target_arch = "wasm32")]
+pub(super) use page::ChosenFiles;
 
 use super::{Pending, Start, Window};
 use egui::{Align2, Color32, Context, FontId, Id, LayerId, Order};
@@ -13,15 +17,21 @@ impl Window {
     pub(super) fn take_dropped(&mut self, context: &Context) {
         let (hovers, dropped) =
             context.input(|input| (!input.raw.hovered_files.is_empty(), input.raw.dropped_files.clone()));
-        if !dropped.is_empty() {
-            self.take_files(context, &dropped);
+        let files = if dropped.is_empty() { self.chosen.take() } else { dropped };
+        if !files.is_empty() {
+            self.take_files(context, &files);
         }
         if hovers {
             let painter = context.layer_painter(LayerId::new(Order::Foreground, Id::unique("dropping")));
             let whole = context.content_rect();
             painter.rect_filled(whole, 0.0, Color32::from_black_alpha(120));
-            let text = "Drop terrain to flood it: a GeoTIFF or an ESRI ASCII grid.\nA scene file or the folder of a run is opened.";
-            painter.text(whole.center(), Align2::CENTER_CENTER, text, FontId::proportional(20.0), Color32::WHITE);
+            painter.text(
+                whole.center(),
+                Align2::CENTER_CENTER,
+                Self::DROP_HINT,
+                FontId::proportional(20.0),
+                Color32::WHITE,
+            );
         }
     }
 
