@@ -104,3 +104,29 @@ fn the_table_of_contents_names_every_page() {
         assert!(name == "SUMMARY.md" || summary.contains(&format!("({name})")), "{name}");
     }
 }
+
+/// The Rust files of a folder and of those in it.
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let of = |path: PathBuf| match path.is_dir() {
+        true => rust_files(&path),
+        false => vec![path],
+    };
+    entries.flat_map(of).filter(|path| path.extension().is_some_and(|ending| ending == "rs")).collect()
+}
+
+#[test]
+fn the_architecture_lists_every_file_with_code_of_one_platform() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let list = text.split("by `cfg(target_arch)` in these files alone: ").nth(1).unwrap().split(". ").next().unwrap();
+    let mut told: Vec<_> = list.split('`').skip(1).step_by(2).map(str::to_owned).collect();
+    told.sort();
+    let crates = root().join("crates");
+    let sources = fs::read_dir(&crates).unwrap().map(|entry| entry.unwrap().path().join("src"));
+    let files = sources.filter(|folder| folder.is_dir()).flat_map(|folder| rust_files(&folder));
+    let has_one = |path: &PathBuf| fs::read_to_string(path).unwrap().contains("target_arch = ");
+    let name = |path: PathBuf| path.strip_prefix(&crates).unwrap().to_string_lossy().into_owned();
+    let mut found: Vec<_> = files.filter(has_one).map(name).collect();
+    found.sort();
+    assert_eq!(told, found);
+}
