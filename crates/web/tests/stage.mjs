@@ -34,7 +34,7 @@ export async function serve() {
 }
 
 const webgpu = [
-  "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--use-angle=swiftshader",
+  "--enable-unsafe-swiftshader", "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--use-angle=swiftshader",
 ];
 
 /** Starts a browser, with WebGPU by software or without any. */
@@ -42,6 +42,9 @@ export function browse({ gpu = true } = {}) {
   const args = ["--no-sandbox", ...(gpu ? webgpu : ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"])];
   return chromium.launch({ executablePath: browserPath, args });
 }
+
+/** Waits so many milliseconds. */
+export const pause = (milliseconds) => new Promise((over) => setTimeout(over, milliseconds));
 
 /** Waits until a value that is asked for repeatedly is there. */
 export async function until(what, ask, seconds = 60) {
@@ -111,6 +114,22 @@ export class Stage {
       const canvas = document.getElementById("window");
       canvas.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
     }, files.map(([name, bytes]) => [name, [...bytes]]));
+  }
+
+  /** Moves fingers over the page, each from one point to another. */
+  async touch(fingers) {
+    const session = await this.page.context().newCDPSession(this.page);
+    const points = (part) => fingers.map(([from, to], id) => ({ id, x: from[0] + part * (to[0] - from[0]), y: from[1] + part * (to[1] - from[1]) }));
+    await session.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: points(0) });
+    for (let step = 1; step <= 8; step += 1) {
+      // A picture each, as of fingers that move.
+      await pause(80);
+      await session.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: points(step / 8) });
+    }
+    await session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+    await session.detach();
+    // Until the window has drawn what they did.
+    await pause(800);
   }
 
   async shot(name) {
