@@ -69,7 +69,7 @@ until_s = 60
 path = "dem.tif"
 
 [flood]
-spacing_m = 20
+spacing_m = 10
 
 [[flood.inflow]]
 name = "spring"
@@ -82,7 +82,7 @@ file = "house.csv"
 `;
 const riverFiles = [
   ["dem.tif", geotiff(60, 80, 10, (column, row) => 0.02 * (column - 30) ** 2 - 0.1 * row + 20)],
-  ["spring.csv", text("time_s,discharge_m3_per_s\n0,200\n60,200\n")],
+  ["spring.csv", text("time_s,discharge_m3_per_s\n0,400\n60,400\n")],
   ["house.csv", text("x,y\n400280,299580\n400320,299580\n400320,299620\n400280,299620\n")],
 ];
 
@@ -253,7 +253,7 @@ for (const order of ["before", "after"]) {
     await stage.until("the first page", (state) => !state.opening);
     const scene = ["mine.toml", text(river)];
     await stage.drop(order === "before" ? [...riverFiles, scene] : [scene, ...riverFiles]);
-    const state = await stage.until("water flows", (state) => state.error || state.particles > 20, 120);
+    const state = await stage.until("water flows", (state) => state.error || state.particles > 60, 120);
     assert.equal(state.error, null);
     assert.ok("house.force_east_N" in state.gauges, Object.keys(state.gauges).join());
     // Its files are there for a restart too.
