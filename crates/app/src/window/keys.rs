@@ -6,6 +6,9 @@ use crate::physics::{Command, default_pace};
 use crate::transport::Pressed;
 use egui::{Key, Ui};
 
+/// Visibility of one of the panels.
+type Panel = fn(&mut Panels) -> &mut bool;
+
 impl Window {
     pub(super) fn keys(&mut self, ui: &Ui) {
         if ui.ctx().egui_wants_keyboard_input() {
@@ -18,7 +21,7 @@ impl Window {
                 self.press(what);
             }
         }
-        let panels: [(Key, fn(&mut Panels) -> &mut bool); 3] = [
+        let panels: [(Key, Panel); 3] = [
             (Key::G, |panels| &mut panels.scenes),
             (Key::P, |panels| &mut panels.parameters),
             (Key::L, |panels| &mut panels.plots),
