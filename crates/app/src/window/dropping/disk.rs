@@ -1,7 +1,7 @@
 //! Dropped files on the disk.
 
-use super::{Pending, Source, Window};
-use crate::dropped;
+use super::{Pending, Window};
+use crate::{Source, dropped};
 use egui::{Context, DroppedFileHandle, Ui};
 use std::path::PathBuf;
 use std::sync::mpsc::channel;
