@@ -8,7 +8,7 @@ use std::sync::mpsc::channel;
 
 /// Files chosen by a button, of which there is none here.
 #[derive(Default)]
-pub(in crate::window) struct ChosenFiles;
+pub(in crate::window) struct ChosenFiles {}
 
 impl ChosenFiles {
     /// None.
