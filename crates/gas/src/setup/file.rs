@@ -124,7 +124,7 @@ mod tests {
     fn balls<const D: usize>(name: &str, text: &str) -> Result<Vec<Ball<D>>, String> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
-        fs::write(&path, text).unwrap();
+        std::fs::write(&path, text).unwrap();
         read(&path).map_err(|error| error.to_string())
     }
 
