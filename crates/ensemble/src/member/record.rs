@@ -175,6 +175,12 @@ impl Record {
             let what = format!("it has the layout {}, and this version of corpuscle knows {FORMAT}", record.format);
             return Err(EnsembleError::damaged(&path, what));
         }
+        // Names of maps become names of files.
+        if let Some(name) = record.maps.iter().flatten().map(|(name, _)| name).find(|name| !is_map_name(name)) {
+            let what =
+                format!("its map `{}` has a name that is not of letters, digits, `_` and `-`", name.escape_debug());
+            return Err(EnsembleError::damaged(&path, what));
+        }
         Ok(Some(record))
     }
 
@@ -182,5 +188,34 @@ impl Record {
         let path = folder.join(RECORD);
         let text = serde_json::to_string_pretty(self).map_err(|error| EnsembleError::damaged(&path, error))?;
         write_text(&path, &(text + "\n"))
+    }
+}
+
+/// True for a name that may be part of a file's name.
+fn is_map_name(name: &str) -> bool {
+    let fits = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
+    !name.is_empty() && name.chars().all(fits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_with_names_that_lead_elsewhere_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let read = |name: &str| {
+            let mut record = Record::new(0, Map::new(), 1);
+            let map = Described { long_name: "Maximum depth".into(), units: "m".into() };
+            record.maps = Some([(name.to_owned(), map)].into());
+            record.write(folder.path()).unwrap();
+            Record::read(folder.path()).map_err(|error| error.to_string())
+        };
+        assert!(read("max_depth-2").unwrap().is_some());
+        for name in ["../../up", "/tmp/x", "a/b", "a\\b", "..", "", "C:x"] {
+            let error = read(name).unwrap_err();
+            let shown = format!("its map `{}` has a name", name.escape_debug());
+            assert!(error.contains("member.json cannot be used") && error.contains(&shown), "{error}");
+        }
     }
 }
