@@ -206,8 +206,10 @@ impl Model for VoronoiFlood {
         let (shown, mut state): (f64, State) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
         let other = || refused("it belongs to another scene".into());
-        let tiles = &self.solver.mesh.layout.tiles;
-        if state.tiles.iter().any(|tile| *tile as usize >= tiles[0] * tiles[1]) || !self.structures.fit(&state.flows) {
+        // Before any cells are made, of which a forged state could need far more than it has.
+        let tiles = self.solver.mesh.layout.tiles;
+        if !state.is_consistent(tiles[0] * tiles[1], self.settings.obstacle.len()) || !self.structures.fit(&state.flows)
+        {
             return Err(other());
         }
         // The tiles that a model without water has made come first, and in any state of this scene too.
@@ -225,16 +227,16 @@ impl Model for VoronoiFlood {
         }
         for tile in state.tiles.split_off(made) {
             self.make_tiles(vec![tile as usize])?;
+            if self.solver.mesh.len() > state.records.len() {
+                return Err(other());
+            }
         }
         let [now, before] = std::mem::take(&mut state.columns);
         let cells = self.solver.mesh.len();
         if now.len() != cells || before.len() != cells || state.records.len() != cells {
             return Err(other());
         }
-        let obstacles = self.settings.obstacle.len();
-        if state.beyond.len() != self.solver.borders.len()
-            || [&state.impulses, &state.forces].iter().any(|of| of.len() != obstacles)
-        {
+        if state.beyond.len() != self.solver.borders.len() {
             return Err(other());
         }
         if self.state.overrides != Overrides::default() || state.overrides != Overrides::default() {

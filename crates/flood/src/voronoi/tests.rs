@@ -1,6 +1,8 @@
 //! What the passes do together, on small pieces of ground.
 
+use super::State;
 use super::boundaries::Now;
+use super::domain::Counts;
 use super::friction::Slowing;
 use super::mesh::{Ground, Layout, Mesh, SOLID};
 use super::solver::{BorderFlux, Solver};
@@ -299,5 +301,42 @@ fn a_held_level_floods_land_with_a_film_on_it() {
         assert!(ledger.balances[0].now > 10.0 * rained, "seed {seed}: {:?}", ledger.balances[0]);
         let errors = ledger.balances.iter().map(|balance| balance.relative_error().abs());
         assert!(errors.fold(0.0, f64::max) < 1e-6, "seed {seed}: {:?}", ledger.balances);
+    }
+}
+
+/// A state that lists all tiles of the ground, or one of them twice, with next to no cells.
+#[test]
+fn forged_states_are_refused_before_their_cells_are_made() {
+    let scene = "run.until_s = 10\nterrain.plane.extent = { length_m = 3000, width_m = 3000, cell_m = 50 }\n[flood]\n\
+                 scheme = \"voronoi\"\nspacing_m = 2\nwater = [{ depth_m = 1, polygon = [[0, 0], [20, 0], [20, 20], [0, 20]] }]";
+    let mut flood = flood(scene, 1);
+    let (made, saved) = (flood.solver.mesh.len(), flood.save());
+    let tiles = flood.solver.mesh.layout.tiles;
+    let none = Counts { cells: 0, borders: 0 };
+    type Forge<'a> = &'a dyn Fn(&mut State);
+    let forged: [(&str, Forge<'_>); 5] = [
+        ("all tiles, without counts", &|state| state.tiles = (0..(tiles[0] * tiles[1]) as u32).collect()),
+        ("all tiles, of no cells", &|state| {
+            let others = (0..(tiles[0] * tiles[1]) as u32).filter(|tile| !state.tiles.contains(tile));
+            let others: Vec<u32> = others.collect();
+            state.tiles.extend(others);
+            state.counts.resize(state.tiles.len(), none);
+        }),
+        ("a tile twice", &|state| {
+            state.tiles.push(state.tiles[0]);
+            state.counts.push(none);
+        }),
+        ("a tile that there is not", &|state| {
+            state.tiles.push(u32::MAX);
+            state.counts.push(none);
+        }),
+        ("infiltration of one cell", &|state| state.soaked.depth = vec![0.0]),
+    ];
+    for (what, forge) in forged {
+        let (shown, mut state): (f64, State) = postcard::from_bytes(&saved).unwrap();
+        forge(&mut state);
+        let error = flood.restore(&postcard::to_stdvec(&(shown, state)).unwrap()).unwrap_err();
+        assert!(error.to_string().contains("another scene"), "{what}: {error}");
+        assert!(flood.solver.mesh.len() < made + 20_000, "{what}: {} cells", flood.solver.mesh.len());
     }
 }

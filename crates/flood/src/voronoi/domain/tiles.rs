@@ -20,6 +20,25 @@ pub(in super::super) struct Counts {
     pub borders: u32,
 }
 
+impl State {
+    /// Whether its tiles are different ones of `tiles`, and its lists as long as these tiles and so many obstacles need.
+    pub(in super::super) fn is_consistent(&self, tiles: usize, obstacles: usize) -> bool {
+        let cells: u64 = self.counts.iter().map(|counts| u64::from(counts.cells)).sum();
+        let borders: u64 = self.counts.iter().map(|counts| u64::from(counts.borders)).sum();
+        let lengths = [self.columns[0].len(), self.columns[1].len(), self.records.len()];
+        let soaked = self.soaked.depth.len();
+        let mut is_listed = vec![false; tiles];
+        let mut is_new =
+            |tile: &u32| is_listed.get_mut(*tile as usize).is_some_and(|listed| !std::mem::replace(listed, true));
+        self.counts.len() == self.tiles.len()
+            && lengths.iter().all(|length| *length as u64 == cells)
+            && self.beyond.len() as u64 == borders
+            && (soaked == 0 || soaked as u64 == cells)
+            && [&self.impulses, &self.forces].iter().all(|of| of.len() == obstacles)
+            && self.tiles.iter().all(&mut is_new)
+    }
+}
+
 /// The state of the cells of a tile and of their border faces.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct TileState {
@@ -284,22 +303,7 @@ impl VoronoiFlood {
     pub(in super::super) fn restore_part(&mut self, mut state: State) -> Result<(), ModelError> {
         let other = || ModelError::Checkpoint("it belongs to another scene".into());
         let Some(domain) = &self.solver.domain else { return Err(other()) };
-        let cells: usize = state.counts.iter().map(|counts| counts.cells as usize).sum();
-        let borders: usize = state.counts.iter().map(|counts| counts.borders as usize).sum();
         let soaked = std::mem::take(&mut state.soaked.depth);
-        let lengths = [state.columns[0].len(), state.columns[1].len(), state.records.len()];
-        let fits = state.counts.len() == state.tiles.len()
-            && lengths == [cells; 3]
-            && state.beyond.len() == borders
-            && (soaked.is_empty() || soaked.len() == cells);
-        let tiles = self.solver.mesh.layout.tiles[0] * self.solver.mesh.layout.tiles[1];
-        let mut is_listed = vec![false; tiles];
-        let is_twice = |tile: &u32| std::mem::replace(&mut is_listed[*tile as usize], true);
-        let obstacles = self.settings.obstacle.len();
-        let fits = fits && [&state.impulses, &state.forces].iter().all(|of| of.len() == obstacles);
-        if !fits || state.tiles.iter().any(is_twice) {
-            return Err(other());
-        }
         if state.overrides != Overrides::default() {
             let changed = "the flood was changed while it ran: resume it without `mpirun`";
             return Err(ModelError::Checkpoint(changed.into()));
