@@ -122,3 +122,15 @@ fn water_higher_than_an_obstacle_is_told() {
     assert!(warnings.iter().any(|warning| warning.contains("'tower'")), "{warnings:?}");
     assert!(!sph_swe(&scene(LAKE)).warnings().iter().any(|warning| warning.contains("'tower'")));
 }
+
+#[test]
+fn corners_far_away_take_no_memory_and_no_time() {
+    for far in ["1e15", "1e300"] {
+        let polygon = format!("[[30, 8], [{far}, 8], [{far}, 12], [30, 12]]");
+        let mut flood = sph_swe(&scene_with(LAKE, &[("flood.obstacle.0.polygon", &polygon)]));
+        go(&mut flood, 0.1);
+        let near =
+            flood.frame().sets[0].position.iter().filter(|at| at[0] > 30.0 && (8.0..12.0).contains(&at[1])).count();
+        assert_eq!(near, 0, "{far}");
+    }
+}

@@ -1,5 +1,6 @@
 //! Obstacles of a scene.
 
+use super::clip::{ring_within, surroundings};
 use super::{Outline, Outlines, shapefile};
 use crate::limits::check_inside;
 use corpuscle_model::ModelError;
@@ -14,17 +15,22 @@ const ROUND: usize = 360;
 /// Opens the outlines of a scene's obstacles for particles that reach at most `reach` m.
 ///
 /// # Errors
-/// [`ModelError::Setup`] for a file that holds no polygon, or one that lies outside the terrain.
+/// [`ModelError::Setup`] for a file that holds no polygon, or one that lies outside the terrain or where its projection does not reach.
 pub(crate) fn open(flood: &Settings, terrain: &Terrain, folder: &Path, reach: f64) -> Result<Outlines, ModelError> {
     let mut outlines = Vec::new();
+    let far = surroundings(terrain, reach);
     for (number, obstacle) in flood.obstacle.iter().enumerate() {
         let subject = format!("the obstacle '{}'", obstacle.name);
         for rings in polygons(obstacle, terrain, folder)? {
             let rings: Polygon = rings.into_iter().filter(|ring| ring.len() >= 3).collect();
             let Some(outer) = rings.first() else { continue };
             check_overlap(&subject, outer, terrain)?;
-            let rings = rings.into_iter().map(|ring| going_on_beyond(ring, terrain.bounds(), reach)).collect();
-            outlines.push(Outline { obstacle: number, rings });
+            rings.iter().try_for_each(|ring| check_known(&subject, ring))?;
+            let rings = rings.into_iter().map(|ring| ring_within(ring, far)).filter(|ring| ring.len() >= 3);
+            let rings: Polygon = rings.map(|ring| going_on_beyond(ring, terrain.bounds(), reach)).collect();
+            if !rings.is_empty() {
+                outlines.push(Outline { obstacle: number, rings });
+            }
         }
     }
     Ok(Outlines::new(outlines, reach))
@@ -83,7 +89,20 @@ fn going_on_beyond(mut ring: Vec<[f64; 2]>, bounds: Bounds, reach: f64) -> Vec<[
     ring
 }
 
+/// Refuses corners without a position.
+fn check_known(subject: &str, ring: &[[f64; 2]]) -> Result<(), ModelError> {
+    let unknown = |corner: &[f64; 2]| !corner.iter().all(|along| along.is_finite());
+    match ring.iter().position(unknown) {
+        Some(corner) => Err(ModelError::Setup(format!(
+            "{subject} has a corner, number {}, so far from the terrain that it has no position there; cut it off",
+            corner + 1
+        ))),
+        None => Ok(()),
+    }
+}
+
 pub(crate) fn check_overlap(subject: &str, ring: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
+    check_known(subject, ring)?;
     let bounds = terrain.bounds();
     let beyond = |axis: usize, low: f64, high: f64| {
         ring.iter().all(|corner| corner[axis] < low) || ring.iter().all(|corner| corner[axis] > high)

@@ -92,6 +92,8 @@ pub(crate) struct OutlineCells<'a> {
 
 /// Most cells of the grid by which outlines are found.
 const MOST_CELLS: f64 = 1e6;
+/// Most entries of all cells together, where one outline after another covers all of them.
+const MOST_ENTRIES: f64 = 2e7;
 
 impl Outlines {
     /// Takes outlines; places within `reach` m of one are near it.
@@ -100,7 +102,13 @@ impl Outlines {
         let boxes: Vec<Bounds> = new.all.iter().map(|outline| widened(outline.bounds(), reach)).collect();
         let Some(bounds) = boxes.iter().copied().reduce(both) else { return new };
         let [width, height] = [bounds.x_max - bounds.x_min, bounds.y_max - bounds.y_min];
-        new.size = reach.max((width * height / MOST_CELLS).sqrt());
+        new.size = reach.max((width * height / MOST_CELLS).sqrt()).max(width.max(height) / MOST_CELLS);
+        let cells = |around: &Bounds, size: f64| around.size().map(|length| (length / size).floor() + 2.0);
+        let entries = |size: f64| boxes.iter().map(|around| cells(around, size).iter().product::<f64>()).sum::<f64>();
+        // In one cell there is one entry for each outline, whose box counts as four at least.
+        while entries(new.size) > MOST_ENTRIES.max(8.0 * boxes.len() as f64) {
+            new.size *= 2.0;
+        }
         new.columns = (width / new.size) as usize + 1;
         new.near = vec![Vec::new(); new.columns * ((height / new.size) as usize + 1)];
         for (number, around) in boxes.iter().enumerate() {
@@ -193,5 +201,28 @@ mod tests {
         assert!(outlines.around([30.0, 1.0]).is_none() && outlines.around([5.0, 5.0]).is_none());
         assert!(outlines.near([12.5, 5.0]).contains(&0) && outlines.near([30.0, 1.0]).is_empty());
         assert!(outlines.near([1e9, -1e9]).is_empty());
+    }
+
+    #[test]
+    fn the_index_stays_small_for_many_large_outlines() {
+        let large = |obstacle: usize| {
+            let high = 1e4 + obstacle as f64;
+            Outline { obstacle, rings: vec![vec![[0.0, 0.0], [high, 0.0], [high, high], [0.0, high]]] }
+        };
+        let outlines = Outlines::new((0..2000).map(large).collect(), 1.0);
+        assert!(outlines.near.iter().map(Vec::len).sum::<usize>() as f64 <= MOST_ENTRIES);
+        assert_eq!(
+            (outlines.near([1.0, 1.0]).len(), outlines.around([11999.5, 1.0]).map(|at| at.outline)),
+            (2000, None)
+        );
+        assert_eq!(outlines.around([11998.5, 1.0]).map(|at| at.outline), Some(1999));
+    }
+
+    #[test]
+    fn the_index_of_a_long_thin_outline_stays_small() {
+        let thin = Outline { obstacle: 0, rings: vec![vec![[0.0, 0.0], [1e12, 0.0], [1e12, 1e-3], [0.0, 1e-3]]] };
+        let outlines = Outlines::new(vec![thin], 1e-3);
+        assert!(outlines.near.len() <= 4_000_000, "{}", outlines.near.len());
+        assert!(outlines.around([5e11, 5e-4]).is_some());
     }
 }

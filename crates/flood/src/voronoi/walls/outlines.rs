@@ -1,7 +1,7 @@
 //! Where walls come from: outlines of obstacles, and of ground without data.
 
 use super::{Wall, WallKind};
-use crate::obstacles::{Outline, check_overlap};
+use crate::obstacles::{Outline, check_overlap, side_within, surroundings};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain;
@@ -24,6 +24,7 @@ pub(crate) fn of_outlines(outlines: &[Outline]) -> impl Iterator<Item = Wall> {
 /// [`ModelError::Setup`] for one that lies outside the terrain.
 pub(crate) fn of_lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Result<Vec<Wall>, ModelError> {
     let mut walls = Vec::new();
+    let far = surroundings(terrain, spacing);
     for (number, obstacle) in scene.obstacle.iter().enumerate() {
         let Some(line) = &obstacle.line else { continue };
         let line: Vec<[f64; 2]> = line.iter().map(|corner| terrain.to_model(*corner)).collect();
@@ -33,8 +34,7 @@ pub(crate) fn of_lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Res
             (None, Some(height)) => terrain.height(x, y) + height,
             (None, None) => f64::INFINITY,
         };
-        for side in line.windows(2) {
-            let [a, b] = [side[0], side[1]];
+        for [a, b] in line.windows(2).filter_map(|side| side_within([side[0], side[1]], far)) {
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
             let parts =
                 if obstacle.height_m.is_some() { (length / spacing).ceil().clamp(1.0, MOST_PARTS) } else { 1.0 };
@@ -59,11 +59,13 @@ pub(crate) fn of_lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Res
 /// [`ModelError::Setup`] for one that lies outside the terrain.
 pub(crate) fn of_sides(scene: &Settings, terrain: &Terrain) -> Result<Vec<Wall>, ModelError> {
     let mut walls = Vec::new();
+    let far = surroundings(terrain, 0.0);
     for (number, side) in scene.edge_line.iter().enumerate() {
         let line: Vec<[f64; 2]> = side.line.iter().map(|corner| terrain.to_model(*corner)).collect();
         check_overlap(&format!("flood.edge_line.{number}"), &line, terrain)?;
         let kind = WallKind::Side(number as u32);
-        walls.extend(line.windows(2).map(|ends| Wall { ends: [ends[0], ends[1]], kind, crest: [f64::INFINITY; 2] }));
+        let sides = line.windows(2).filter_map(|ends| side_within([ends[0], ends[1]], far));
+        walls.extend(sides.map(|ends| Wall { ends, kind, crest: [f64::INFINITY; 2] }));
     }
     Ok(walls)
 }
