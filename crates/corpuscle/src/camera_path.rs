@@ -23,7 +23,7 @@ pub struct CameraStation {
 /// # Errors
 /// What is wrong with the file, with its line.
 pub fn camera_path(path: &Path) -> Result<Vec<CameraStation>, String> {
-    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    let text = corpuscle_scene::read_text(path).map_err(|error| error.to_string())?;
     stations(&text)
 }
 

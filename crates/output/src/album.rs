@@ -5,6 +5,7 @@ use crate::whole::write_bytes;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use corpuscle_drawing::png::decode_rgba;
+use corpuscle_scene::{read_bytes, read_text};
 use jpeg_encoder::{ColorType, Encoder};
 use std::fmt::Write;
 use std::fs;
@@ -31,7 +32,7 @@ pub fn put_into_report(folder: &Path) -> Result<bool, OutputError> {
     if !path.exists() {
         return Ok(false);
     }
-    let page = fs::read_to_string(&path).map_err(OutputError::read(&path))?;
+    let page = read_text(&path).map_err(OutputError::read(&path))?;
     let page = without_album(&page);
     let at = page.find("<section>").ok_or_else(|| OutputError::content(&path, "it has no sections"))?;
     let page = [&page[..at], &album(folder)?, &page[at..]].concat();
@@ -72,7 +73,7 @@ fn film(folder: &Path) -> Result<String, OutputError> {
     if length > LARGEST_FILM {
         return Ok(link.into());
     }
-    let bytes = STANDARD.encode(fs::read(&path).map_err(OutputError::read(&path))?);
+    let bytes = STANDARD.encode(read_bytes(&path).map_err(OutputError::read(&path))?);
     let video = "<video controls loop muted playsinline style=\"display:block;width:100%;height:auto\"";
     Ok(format!("<figure>{video} src=\"data:video/mp4;base64,{bytes}\"></video></figure>\n{link}"))
 }
@@ -101,7 +102,7 @@ fn chosen(all: Vec<PathBuf>) -> Vec<PathBuf> {
 
 /// A picture as a JPEG file, no wider than a page needs.
 fn small(path: &Path) -> Result<Vec<u8>, OutputError> {
-    let bytes = fs::read(path).map_err(OutputError::read(path))?;
+    let bytes = read_bytes(path).map_err(OutputError::read(path))?;
     let wrong = |what: String| OutputError::content(path, what);
     let (width, height, rgba) = decode_rgba(&bytes).map_err(wrong)?;
     let (size, rgb) = shrunk([width as usize, height as usize], &rgba);

@@ -5,9 +5,9 @@
 use crate::OutputError;
 use crate::frames::FrameFormat;
 use crate::whole::write_whole;
+use corpuscle_scene::read_bytes;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::fs;
 use std::io::Write;
 use std::path::Path;
 
@@ -56,7 +56,7 @@ impl Progress {
     /// Reads a checkpoint and its state, and checks that it is sound, of this version and of this scene.
     pub(crate) fn read(path: &Path, scene_text: &str) -> Result<(Self, Vec<u8>), OutputError> {
         let refuse = |what: String| OutputError::Checkpoint { path: path.to_owned(), what };
-        let mut bytes = fs::read(path).map_err(OutputError::read(path))?;
+        let mut bytes = read_bytes(path).map_err(OutputError::read(path))?;
         let (digest, rest) = split_line(&bytes)
             .and_then(|(line, rest)| Some((line.strip_prefix(MAGIC)?, rest)))
             .ok_or_else(|| refuse("it does not begin as a checkpoint of this version does".into()))?;
@@ -99,6 +99,7 @@ fn split_line(bytes: &[u8]) -> Option<(&str, &[u8])> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn progress() -> Progress {
         Progress {

@@ -3,7 +3,8 @@
 use crate::OutputError;
 use crate::number::Shortest;
 use corpuscle_model::GaugeColumn;
-use std::fs::{self, File, OpenOptions};
+use corpuscle_scene::{read_bytes, read_text};
+use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -31,7 +32,7 @@ impl GaugeWriter {
     /// An existing file, cut back to its first `rows` rows. What a crash tore off is cut with the rest.
     pub(crate) fn resume(path: &Path, rows: usize) -> Result<Self, OutputError> {
         let table = GaugeTable::read(path)?;
-        let text = fs::read(path).map_err(OutputError::read(path))?;
+        let text = read_bytes(path).map_err(OutputError::read(path))?;
         let mut ends = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at as u64 + 1);
         let length = ends.nth(rows).ok_or_else(|| {
             let found = table.rows.len();
@@ -98,7 +99,7 @@ impl GaugeTable {
     /// # Errors
     /// [`OutputError::Read`] or, with the line, [`OutputError::Content`].
     pub fn read(path: &Path) -> Result<Self, OutputError> {
-        let text = fs::read_to_string(path).map_err(OutputError::read(path))?;
+        let text = read_text(path).map_err(OutputError::read(path))?;
         let whole = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
         Self::parse(whole).map_err(|what| OutputError::content(path, what))
     }
@@ -133,6 +134,7 @@ impl GaugeTable {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::fs;
 
     fn columns() -> Vec<GaugeColumn> {
         let column = |gauge: &str, quantity, unit| GaugeColumn { gauge: gauge.into(), quantity, unit };

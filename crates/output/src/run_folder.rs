@@ -9,6 +9,7 @@ use crate::whole::{write_bytes, write_whole};
 use crate::{Clock, OutputError, Summary, write_extent, write_run_up};
 use corpuscle_atomic_file::clear_unfinished;
 use corpuscle_model::{Chart, Container, Frame, GaugeColumn, Map, Surface};
+use corpuscle_scene::read_text;
 use corpuscle_terrain::Terrain;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -94,7 +95,7 @@ impl RunFolder {
     /// [`OutputError::Read`], [`OutputError::Write`].
     pub fn resume(path: &Path) -> Result<(Self, Clock, Vec<u8>), OutputError> {
         let scene_path = path.join("scene.toml");
-        let scene_text = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
+        let scene_text = read_text(&scene_path).map_err(OutputError::read(&scene_path))?;
         let checkpoint = checkpoint_path(path);
         if !checkpoint.exists() {
             return Err(OutputError::NoCheckpoint { path: path.to_owned() });

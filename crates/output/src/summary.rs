@@ -4,9 +4,9 @@ use crate::OutputError;
 use crate::extent::ExtentScores;
 use crate::whole::write_whole;
 use corpuscle_model::Ledger;
+use corpuscle_scene::read_text;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::Write;
 use std::path::Path;
 
@@ -96,7 +96,7 @@ impl Summary {
     /// [`OutputError::Read`] or [`OutputError::Content`].
     pub fn read(folder: &Path) -> Result<Self, OutputError> {
         let path = folder.join("summary.json");
-        let text = fs::read_to_string(&path).map_err(OutputError::read(&path))?;
+        let text = read_text(&path).map_err(OutputError::read(&path))?;
         serde_json::from_str(&text).map_err(|error| OutputError::content(&path, error))
     }
 
@@ -112,6 +112,7 @@ impl Summary {
 mod tests {
     use super::*;
     use corpuscle_model::Balance;
+    use std::fs;
 
     #[test]
     fn reads_back_and_has_the_names_that_scripts_depend_on() {

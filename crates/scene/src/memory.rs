@@ -28,22 +28,6 @@ pub fn keep_in_memory(folder: &Path) {
     files().retain(|path, _| path.starts_with(folder));
 }
 
-/// The bytes of a file in memory or on the disk.
-///
-/// # Errors
-/// Where it cannot be read; where there is no disk, that it is not in memory.
-pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    in_memory(path).map_or_else(|| std::fs::read(path).map_err(without_disk), |bytes| Ok(bytes.to_vec()))
-}
-
-/// The text of a file in memory or on the disk.
-///
-/// # Errors
-/// Those of [`read_file`], and where it is no text.
-pub fn read_text(path: &Path) -> io::Result<String> {
-    String::from_utf8(read_file(path)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is no text in UTF-8"))
-}
-
 /// The error of reading a file: where there is no disk, that it is not in memory.
 pub fn without_disk(error: io::Error) -> io::Error {
     match error.kind() {
@@ -59,6 +43,7 @@ pub fn without_disk(error: io::Error) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{read_bytes, read_text};
 
     #[test]
     fn files_of_other_folders_are_freed() {
@@ -67,7 +52,7 @@ mod tests {
         assert_eq!(read_text(Path::new("/freed/1/a.csv")).unwrap(), "0, 1");
         keep_in_memory(Path::new("/freed/2"));
         assert!(in_memory(Path::new("/freed/1/a.csv")).is_none());
-        assert_eq!(read_file(Path::new("/freed/2/b.csv")).unwrap(), b"0, 2");
+        assert_eq!(read_bytes(Path::new("/freed/2/b.csv")).unwrap(), b"0, 2");
     }
 
     #[test]

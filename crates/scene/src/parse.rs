@@ -13,7 +13,7 @@ impl Scene {
     /// As [`Scene::parse`], or [`SceneError::Unreadable`].
     pub fn read(path: &Path, overrides: &[(String, String)]) -> Result<Self, SceneError> {
         let unreadable = |source| SceneError::Unreadable { path: path.to_owned(), source };
-        let text = std::fs::read_to_string(path).map_err(unreadable)?;
+        let text = crate::read_text(path).map_err(unreadable)?;
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 

@@ -4,6 +4,7 @@
 use crate::Error;
 use corpuscle_drawing::png::decode_rgba;
 use corpuscle_gpu::Image;
+use corpuscle_scene::{read_bytes, read_text};
 use corpuscle_terrain::{Photo, Terrain, Window};
 use std::fs;
 use std::path::Path;
@@ -30,13 +31,13 @@ pub fn ground_picture(path: &Path, terrain: &Terrain, natural: &Image) -> Result
     if GEOTIFF.iter().any(|geotiff| ending == *geotiff) {
         return of_geotiff(path, terrain, natural);
     }
-    let bytes = fs::read(path).map_err(|error| wrong(error.to_string()))?;
+    let bytes = read_bytes(path).map_err(|error| wrong(error.to_string()))?;
     let (width, height, rgba) = decode_rgba(&bytes).map_err(wrong)?;
     let photo = Image { width, height, rgba };
     let mut files = WORLD_FILES.into_iter().map(|ending| path.with_extension(ending));
     let Some(file) = files.find(|file| file.is_file()) else { return Ok(photo) };
     let in_file = |what: &str| wrong(format!("its world file {}: {what}", file.display()));
-    let text = fs::read_to_string(&file).map_err(|error| in_file(&error.to_string()))?;
+    let text = read_text(&file).map_err(|error| in_file(&error.to_string()))?;
     let world = World::parse(&text).ok_or_else(|| in_file("six numbers are wanted, the size of a pixel not 0"))?;
     let grid = PixelGrid::over(terrain, |position| Some(world.pixel(terrain.to_own(position))));
     grid.lay(&photo, natural).ok_or_else(|| in_file("the picture lies beside the terrain"))

@@ -4,7 +4,7 @@ use super::clip::{ring_within, surroundings};
 use super::{Outline, Outlines, shapefile};
 use crate::limits::check_inside;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Circle, Flood as Settings, Obstacle, read_file, read_text};
+use corpuscle_scene::{Circle, Flood as Settings, Obstacle, read_bytes, read_text};
 use corpuscle_terrain::{Bounds, Polygon, Terrain, polygons_of_geojson};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -124,7 +124,7 @@ fn extension(path: &Path) -> String {
 fn read(path: &Path, terrain: &Terrain) -> Result<Vec<Polygon>, String> {
     match extension(path).as_str() {
         "geojson" | "json" => geojson(path, terrain),
-        "shp" => shapefile::polygons(&read_file(path).map_err(|error| error.to_string())?),
+        "shp" => shapefile::polygons(&read_bytes(path).map_err(|error| error.to_string())?),
         "csv" => csv(path),
         other => Err(format!("'.{other}' is no format of polygons here; give .geojson, .shp or .csv")),
     }
@@ -137,8 +137,8 @@ fn geojson(path: &Path, terrain: &Terrain) -> Result<Vec<Polygon>, String> {
 
 /// Corners in columns x and y; where there is a column `name`, each name is a polygon.
 fn csv(path: &Path) -> Result<Vec<Polygon>, String> {
-    let text = read_file(path).map_err(|error| error.to_string())?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
+    let bytes = read_bytes(path).map_err(|error| error.to_string())?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes.as_slice());
     let headers = reader.headers().map_err(|error| error.to_string())?.clone();
     let column = |name: &str| headers.iter().position(|header| header.eq_ignore_ascii_case(name));
     let (Some(x), Some(y)) = (column("x"), column("y")) else {

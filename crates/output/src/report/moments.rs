@@ -1,6 +1,6 @@
 //! The moments that a report shows, from the start of a run to its end.
 
-use corpuscle_scene::Run;
+use corpuscle_scene::{Run, read_bytes};
 use std::path::{Path, PathBuf};
 
 /// How many there are.
@@ -26,5 +26,5 @@ pub(super) fn path(folder: &Path, number: usize) -> PathBuf {
 
 /// The pictures that there are; moments that were not reached, as in a run that broke down, have none.
 pub(super) fn read(folder: &Path, run: &Run) -> Vec<Vec<u8>> {
-    numbers(run).into_iter().filter_map(|number| std::fs::read(path(folder, number)).ok()).collect()
+    numbers(run).into_iter().filter_map(|number| read_bytes(&path(folder, number)).ok()).collect()
 }

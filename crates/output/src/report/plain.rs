@@ -6,7 +6,7 @@ use crate::picture::{Figure, number, plot, svg_to_png, time};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, GaugeColumn, Model};
-use corpuscle_scene::Scene;
+use corpuscle_scene::{Scene, read_text};
 use std::fs;
 use std::path::Path;
 
@@ -36,7 +36,7 @@ impl<'a> PlainReport<'a> {
     pub fn write(&self) -> Result<(), OutputError> {
         let summary = Summary::read(self.folder)?;
         let scene_path = self.folder.join("scene.toml");
-        let scene = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
+        let scene = read_text(&scene_path).map_err(OutputError::read(&scene_path))?;
         let table = GaugeTable::read(&self.folder.join("gauges.csv"))?;
         let mut charts = over_time(&self.model.gauge_columns(), &table, self.time_unit);
         charts.extend(self.model.charts());

@@ -10,7 +10,7 @@ use crate::picture::{Figure, plot, svg_to_png, svg_url};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_model::Model;
-use corpuscle_scene::{Dew, Scene};
+use corpuscle_scene::{Dew, Scene, read_text};
 use std::fs;
 use std::path::Path;
 
@@ -69,7 +69,7 @@ impl<'a> DewReport<'a> {
     pub fn write(&self) -> Result<(), OutputError> {
         let summary = Summary::read(self.folder)?;
         let scene_path = self.folder.join("scene.toml");
-        let scene = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
+        let scene = read_text(&scene_path).map_err(OutputError::read(&scene_path))?;
         let table = GaugeTable::read(&self.folder.join("gauges.csv"))?;
         let drawn = self.draw(&table)?;
         let page = self.page(&summary, &table, &drawn, &scene);

@@ -12,7 +12,7 @@ use crate::picture::{Figure, plot, svg_to_png};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_model::{Chart, Model};
-use corpuscle_scene::{Gas, Scene};
+use corpuscle_scene::{Gas, Scene, read_text};
 use rayon::prelude::*;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -66,7 +66,7 @@ impl<'a> GasReport<'a> {
     pub fn write(&self) -> Result<(), OutputError> {
         let summary = Summary::read(self.folder)?;
         let scene_path = self.folder.join("scene.toml");
-        let scene_text = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
+        let scene_text = read_text(&scene_path).map_err(OutputError::read(&scene_path))?;
         let gauges = GaugeTable::read(&self.folder.join("gauges.csv"))?;
         let mut charts = self.model.charts();
         charts.extend(charts::over_time(self.gas, &self.model.gauge_columns(), &gauges, &charts));
