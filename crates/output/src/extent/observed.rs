@@ -2,9 +2,9 @@
 
 use super::wet_area;
 use crate::OutputError;
+use corpuscle_scene::read_text;
 use corpuscle_terrain::{Polygon, Terrain, polygons_of_geojson};
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::path::Path;
 
 /// How a flooded extent compares with an observed one. Areas count, not cells: with A wet in both, B wet only as
@@ -32,10 +32,10 @@ pub struct ExtentScores {
 /// # Errors
 /// [`OutputError::Read`], or [`OutputError::Content`] for a file that is no GeoJSON or has no polygon on the terrain.
 pub fn compare_extent(observed: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result<ExtentScores, OutputError> {
-    let text = fs::read_to_string(observed).map_err(OutputError::read(observed))?;
+    let text = read_text(observed).map_err(OutputError::read(observed))?;
     let polygons = polygons_of_geojson(&text).map_err(|error| OutputError::content(observed, error))?;
     let polygons = terrain.polygons_to_own(polygons);
-    let observed_wet = draw(&polygons, terrain);
+    let observed_wet = draw(&polygons, terrain).map_err(|what| OutputError::content(observed, what))?;
     if !observed_wet.contains(&true) {
         let count = polygons.len();
         let what = format!(
@@ -62,38 +62,92 @@ fn scores(cells: &[[bool; 2]], terrain: &Terrain) -> ExtentScores {
     }
 }
 
-/// The cells of the terrain's map grid whose centres are inside one of the polygons.
-fn draw(polygons: &[Polygon], terrain: &Terrain) -> Vec<bool> {
-    let grid = terrain.map_grid();
-    let mut wet = vec![false; grid.columns * grid.rows];
-    for polygon in polygons {
-        let rings: Vec<Vec<[f64; 2]>> =
-            polygon.iter().map(|ring| ring.iter().map(|place| grid.georeference.position(*place)).collect()).collect();
-        fill(&rings, grid.columns, &mut wet);
-    }
-    wet
-}
+/// The farthest corner that is drawn, cells from the first.
+const FARTHEST: f64 = 1e12;
+/// Most crossings of sides and rows: those of polygons round every other cell of the largest grids are fewer.
+const MOST_CROSSINGS: usize = 100_000_000;
 
-/// Sets the cells whose centres are inside the rings by the even-odd rule. Places are (column, row), whole at centres.
-fn fill(rings: &[Vec<[f64; 2]>], columns: usize, wet: &mut [bool]) {
-    let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); wet.len() / columns];
-    for ring in rings {
-        for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-            let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
-            // Rows in [low, high): an end that lies on a row counts for one of its two edges only.
-            let first = low[1].ceil().max(0.0) as usize;
-            let end = high[1].ceil().clamp(0.0, crossings.len() as f64) as usize;
-            for (row, crossings) in crossings.iter_mut().enumerate().take(end).skip(first) {
-                let along = (row as f64 - low[1]) / (high[1] - low[1]);
-                crossings.push(low[0] + along * (high[0] - low[0]));
+/// The cells of the terrain's map grid whose centres are inside one of the polygons.
+fn draw(polygons: &[Polygon], terrain: &Terrain) -> Result<Vec<bool>, String> {
+    let grid = terrain.map_grid();
+    let mut sides = Vec::new();
+    for (number, polygon) in polygons.iter().enumerate() {
+        for ring in polygon {
+            let cells: Vec<[f64; 2]> = ring.iter().map(|place| grid.georeference.position(*place)).collect();
+            let is_far = |cell: &[f64; 2]| !cell.iter().all(|along| along.abs() <= FARTHEST);
+            if let Some(corner) = cells.iter().position(is_far) {
+                let [x, y] = ring[corner];
+                return Err(format!("a polygon has a corner at ({x:e}, {y:e}), too far from the terrain; correct it"));
             }
+            let ends = cells.iter().zip(cells.iter().cycle().skip(1));
+            sides.extend(ends.filter_map(|(a, b)| Side::between(*a, *b, number, grid.rows)));
         }
     }
-    for (row, mut crossings) in crossings.into_iter().enumerate() {
-        crossings.sort_by(f64::total_cmp);
-        for pair in crossings.chunks_exact(2) {
-            let [from, to] = [pair[0], pair[1]].map(|x| x.ceil().clamp(0.0, columns as f64) as usize);
-            wet[row * columns + from..row * columns + to].fill(true);
+    let crossings = sides.iter().fold(0_usize, |sum, side| sum.saturating_add(side.end - side.first));
+    if crossings > MOST_CROSSINGS {
+        return Err(format!(
+            "its polygons have {} sides, which cross the rows of the terrain's cells {crossings} times; {MOST_CROSSINGS} are \
+             possible. Simplify them",
+            sides.len()
+        ));
+    }
+    let mut wet = vec![false; grid.columns * grid.rows];
+    fill(sides, polygons.len(), grid.columns, &mut wet);
+    Ok(wet)
+}
+
+/// A side of a polygon that crosses rows.
+struct Side {
+    polygon: usize,
+    /// The rows that it crosses, from `first` to before `end`.
+    first: usize,
+    end: usize,
+    /// (column, row) of its ends, whole at the centres of cells; the first has the lower row.
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Side {
+    /// The side from one corner to another; none where it crosses no row.
+    fn between(a: [f64; 2], b: [f64; 2], polygon: usize, rows: usize) -> Option<Self> {
+        let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
+        // Rows in [low, high): an end that lies on a row counts for one of its two sides only.
+        let [first, end] = [low, high].map(|end| end[1].ceil().clamp(0.0, rows as f64) as usize);
+        (first < end).then_some(Self { polygon, first, end, low, high })
+    }
+
+    fn column_at(&self, row: usize) -> f64 {
+        let along = (row as f64 - self.low[1]) / (self.high[1] - self.low[1]);
+        self.low[0] + along * (self.high[0] - self.low[0])
+    }
+}
+
+/// Sets the cells whose centres are inside a polygon by the even-odd rule. Row by row with the sides that cross it.
+fn fill(mut sides: Vec<Side>, polygons: usize, columns: usize, wet: &mut [bool]) {
+    sides.sort_by_key(|side| side.first);
+    let mut waiting = sides.into_iter().peekable();
+    let mut crossing: Vec<Side> = Vec::new();
+    let mut crossings: Vec<(f64, usize)> = Vec::new();
+    let mut is_inside = vec![false; polygons];
+    for (row, cells) in wet.chunks_exact_mut(columns).enumerate() {
+        crossing.retain(|side| row < side.end);
+        while let Some(side) = waiting.next_if(|side| side.first <= row) {
+            crossing.push(side);
+        }
+        crossings.clear();
+        crossings.extend(crossing.iter().map(|side| (side.column_at(row), side.polygon)));
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut around, mut from) = (0_usize, 0);
+        for (column, polygon) in &crossings {
+            let to = column.ceil().clamp(0.0, columns as f64) as usize;
+            let before = around;
+            is_inside[*polygon] ^= true;
+            around = if is_inside[*polygon] { around + 1 } else { around - 1 };
+            match (before, around) {
+                (0, _) => from = to,
+                (_, 0) => cells[from..to].fill(true),
+                _ => {}
+            }
         }
     }
 }
@@ -102,6 +156,7 @@ fn fill(rings: &[Vec<[f64; 2]>], columns: usize, wet: &mut [bool]) {
 mod tests {
     use super::*;
     use corpuscle_terrain::Bounds;
+    use std::fs;
 
     /// 10 x 5 cells of 2 m.
     fn terrain() -> Terrain {
@@ -138,6 +193,42 @@ mod tests {
         let ring = r#"{"type":"Feature","properties":{},"geometry":{"type":"MultiPolygon","coordinates":
             [[[[0,0],[20,0],[20,10],[0,10],[0,0]],[[4,4],[4,6],[6,6],[6,4],[4,4]]]]}}"#;
         assert_eq!(compare(ring, &depths(|_, _| true)).unwrap().observed_area_m2, 200.0 - 4.0);
+    }
+
+    #[test]
+    fn cells_of_any_of_several_polygons_are_wet_once() {
+        let square = |low: f64, high: f64| format!("[[[{low},0],[{high},0],[{high},10],[{low},10],[{low},0]]]");
+        let area = |squares: &[[f64; 2]]| {
+            let all: Vec<String> = squares.iter().map(|[low, high]| square(*low, *high)).collect();
+            let text = format!(r#"{{"type":"MultiPolygon","coordinates":[{}]}}"#, all.join(","));
+            compare(&text, &depths(|_, _| true)).unwrap().observed_area_m2
+        };
+        assert_eq!(area(&[[0.0, 8.0], [4.0, 12.0]]), 120.0);
+        assert_eq!(area(&[[0.0, 20.0], [4.0, 8.0]]), 200.0);
+        assert_eq!(area(&[[0.0, 4.0], [12.0, 16.0], [4.0, 8.0]]), 120.0);
+        assert_eq!(area(&[[-1e9, 4.0], [16.0, 1e9]]), 80.0);
+    }
+
+    /// A terrain of many rows, and sides that cross all of them.
+    #[test]
+    fn sides_take_no_memory_for_each_row() {
+        let bounds = Bounds { x_min: 0.0, x_max: 4.0, y_min: 0.0, y_max: 10_000.0 };
+        let tall = Terrain::gridded(bounds, 1.0, |_, _| 0.0);
+        let zigzag = |sides: usize| (0..sides).map(|side| [2.0, if side % 2 == 0 { -1e4 } else { 2e4 }]).collect();
+        let rows = tall.map_grid().rows;
+        let drawn = draw(&[vec![zigzag(2000)]], &tall).unwrap();
+        assert!(!drawn.contains(&true));
+        let error = draw(&[vec![zigzag(MOST_CROSSINGS / rows + 2)]], &tall).unwrap_err();
+        assert!(error.contains("Simplify"), "{error}");
+    }
+
+    #[test]
+    fn corners_that_are_absurdly_far_are_refused() {
+        for corner in ["[1e300,0]", "[0,-1e308]", "[1e15,1e15]"] {
+            let error =
+                compare(&WEST_HALF.replacen("[10,0]", corner, 1), &depths(|_, _| true)).unwrap_err().to_string();
+            assert!(error.contains("observed.geojson") && error.contains("too far from the terrain"), "{error}");
+        }
     }
 
     #[test]
