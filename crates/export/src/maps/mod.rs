@@ -11,7 +11,7 @@ use crate::hdf5::{DEFLATE, HasAttributes, create};
 use crate::run::Run;
 use coordinates::Coordinates;
 use corpuscle_atomic_file::write_whole_by_path;
-use corpuscle_output::{MapFiles, OutputError};
+use corpuscle_output::MapFiles;
 use corpuscle_terrain::Survey;
 use quantities::quantity;
 use rust_hdf5::{H5Dataset, H5File};
@@ -52,7 +52,7 @@ fn write_maps(file: &H5File, maps: &MapFiles, grid: &Survey) -> Result<(), Faile
     let size = [grid.rows, grid.columns];
     let chunk = size.map(|cells| cells.min(CHUNK));
     for name in maps.names() {
-        let values = checked(maps.read(name)?, size, || maps.path(name))?;
+        let values = maps.read(name, grid.rows * grid.columns)?;
         let map = file.new_dataset::<f32>().shape(size).chunk(&chunk);
         let map = map.shuffle_deflate(DEFLATE).fill_value(f32::NAN).create(name)?;
         map.write_raw(&values)?;
@@ -67,27 +67,10 @@ fn write_maps(file: &H5File, maps: &MapFiles, grid: &Survey) -> Result<(), Faile
         file.new_dataset::<f32>().shape([maps.times().len(), rows, columns]).chunk(&[1, chunk[0], chunk[1]]);
     let over_time = over_time.shuffle_deflate(DEFLATE).fill_value(f32::NAN).create(name)?;
     for index in 0..maps.times().len() {
-        let values = checked(maps.read_at(index)?, size, || maps.path_at(index))?;
+        let values = maps.read_at(index, grid.rows * grid.columns)?;
         over_time.write_slice(&[index, 0, 0], &[1, rows, columns], &values)?;
     }
     describe(&over_time, name, &coordinates)
-}
-
-/// The values of a map, if it has as many cells as the first.
-fn checked(
-    values: Vec<f32>,
-    [rows, columns]: [usize; 2],
-    file: impl FnOnce() -> std::path::PathBuf,
-) -> Result<Vec<f32>, Failed> {
-    if values.len() == rows * columns {
-        return Ok(values);
-    }
-    let what = format!(
-        "it has {} cells where the other maps have {}; move it out of the folder",
-        values.len(),
-        rows * columns
-    );
-    Err(Failed::Read(OutputError::Content { path: file(), what }))
 }
 
 /// What the variable of a map says of itself.

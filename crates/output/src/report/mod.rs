@@ -17,7 +17,7 @@ use crate::maps::read_map;
 use crate::picture::{Ground, Place, PlaceKind, Window};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, OutputError, Summary};
-use corpuscle_scene::{Circle, Flood, FloodScene, Obstacle, Scene};
+use corpuscle_scene::{Circle, Flood, FloodScene, Obstacle, Scene, read_text};
 use corpuscle_terrain::Terrain;
 use figures::{FIELDS, FieldKind, Figures};
 use snapshots::Snapshot;
@@ -102,7 +102,7 @@ impl Report {
     /// [`OutputError::Read`] or [`OutputError::Content`], naming the file.
     pub fn read(folder: &Path, scene: &Scene, terrain: &Terrain) -> Result<Self, OutputError> {
         let scene_path = folder.join("scene.toml");
-        let scene_text = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
+        let scene_text = read_text(&scene_path).map_err(OutputError::read(&scene_path))?;
         let no_flood = || OutputError::content(&scene_path, "it is not the scene of a flood");
         let flood = scene.flood().ok_or_else(no_flood)?;
         let grid = terrain.map_grid();
@@ -112,7 +112,7 @@ impl Report {
         for kind in &FIELDS {
             let path = maps.join(format!("{}.tif", kind.name));
             if path.exists() {
-                fields.push(Field { kind, values: read_field(&path, cells)? });
+                fields.push(Field { kind, values: read_map(&path, cells)? });
             }
         }
         let (whole, places) = (Whole::of(terrain), places(&flood.flood, terrain));
@@ -184,16 +184,6 @@ fn title_or_folder(scene: &Scene, folder: &Path) -> String {
 
 fn folder_name(folder: &Path) -> String {
     folder.file_name().map_or_else(|| "run".into(), |name| name.to_string_lossy().into_owned())
-}
-
-fn read_field(path: &Path, cells: usize) -> Result<Vec<f32>, OutputError> {
-    let values = read_map(path)?;
-    if values.len() != cells {
-        let what =
-            format!("it has {} cells where the scene's terrain has {cells}; it belongs to another", values.len());
-        return Err(OutputError::content(path, what));
-    }
-    Ok(values)
 }
 
 /// Gauges, inflows, sections and obstacles of the scene, in the terrain's own coordinates.

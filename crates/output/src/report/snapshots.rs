@@ -1,8 +1,7 @@
 //! Depth maps over time, as many as fit on a page.
 
-use super::read_field;
 use crate::OutputError;
-use crate::maps::{read_times, snapshot_path};
+use crate::maps::{read_map, read_times, snapshot_path};
 use std::path::Path;
 
 /// Snapshots on a page at most.
@@ -20,8 +19,7 @@ pub(super) struct Snapshot {
 /// Reads depth maps, evenly spread from the first after the start to the last.
 pub(super) fn read(maps: &Path, cells: usize) -> Result<Vec<Snapshot>, OutputError> {
     let times = read_times(maps)?;
-    let read =
-        |index: usize| Ok(Snapshot { time: times[index], depth: read_field(&snapshot_path(maps, index), cells)? });
+    let read = |index: usize| Ok(Snapshot { time: times[index], depth: read_map(&snapshot_path(maps, index), cells)? });
     chosen(times.len()).into_iter().map(read).collect()
 }
 
