@@ -254,6 +254,19 @@ fn damaged_particle_files_are_errors_that_name_the_file() {
 }
 
 #[test]
+fn a_collection_names_files_beside_it_only() {
+    let (folder, _) = listed(FrameFormat::Vtp);
+    let run = folder.path().join("run");
+    let path = run.join("frames/frames.pvd");
+    let whole = fs::read_to_string(&path).unwrap();
+    for name in ["..", ".", "/", "../other.vtp", "/etc/passwd", "a/b.vtp", "./frame_000000.vtp", "frame_000000.vtp/"] {
+        fs::write(&path, whole.replace("frame_000000.vtp", name)).unwrap();
+        let error = FrameFiles::list(&run, |_| 0.0).unwrap_err().to_string();
+        assert!(error.contains(&format!("the file `{name}` does not stand beside it")), "{error}");
+    }
+}
+
+#[test]
 fn a_run_without_particle_files_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let error = FrameFiles::list(folder.path(), |_| 0.0).unwrap_err().to_string();

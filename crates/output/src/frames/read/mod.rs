@@ -7,10 +7,10 @@ mod xyz;
 
 use crate::OutputError;
 use corpuscle_model::Frame;
+use corpuscle_scene::read_text;
 use quick_xml::Reader;
 use quick_xml::events::Event;
 use std::ffi::OsStr;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The particle files of a run, in order of time.
@@ -30,7 +30,7 @@ impl FrameFiles {
         let folder = run.join("frames");
         let collection = folder.join("frames.pvd");
         let files = if collection.exists() {
-            let text = fs::read_to_string(&collection).map_err(OutputError::read(&collection))?;
+            let text = read_text(&collection).map_err(OutputError::read(&collection))?;
             let files = collected(&text).map_err(|what| OutputError::content(&collection, what))?;
             files.into_iter().map(|(time, name)| (time, folder.join(name))).collect()
         } else {
@@ -70,7 +70,7 @@ impl FrameFiles {
     /// Where there is no frame of this number.
     pub fn read(&self, index: usize) -> Result<Frame, OutputError> {
         let (time, path) = &self.files[index];
-        let text = fs::read_to_string(path).map_err(OutputError::read(path))?;
+        let text = read_text(path).map_err(OutputError::read(path))?;
         let frame = match path.extension().and_then(OsStr::to_str) {
             Some("csv") => csv::read(&text, *time),
             Some("xyz") => xyz::read(&text),
@@ -90,7 +90,8 @@ fn collected(text: &str) -> Result<Vec<(f64, String)>, String> {
                 let time = vtp::attribute(&element, "timestep")?;
                 let time = time.parse().map_err(|_| format!("the time `{time}` is not a number"))?;
                 let name = vtp::attribute(&element, "file")?;
-                if Path::new(&name).components().count() != 1 {
+                // Of `/` and `..`, too, there is one component, and `a/.` has the one of `a`.
+                if Path::new(&name).file_name() != Some(OsStr::new(&name)) {
                     return Err(format!("the file `{name}` does not stand beside it"));
                 }
                 files.push((time, name));
