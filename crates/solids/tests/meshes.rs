@@ -212,6 +212,24 @@ fn a_glb_cannot_reach_beyond_its_data() {
     }
 }
 
+/// Rows without properties take no bytes: a small file said to have any number of them.
+#[test]
+fn elements_of_a_ply_without_properties_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let head = |format: &str, elements: String| format!("ply\nformat {format} 1.0\n{elements}end_header\n");
+    let read = |text: String| Mesh::read(&written(&folder, "many.ply", text), Some(1.0)).unwrap_err().to_string();
+    for format in ["ascii", "binary_little_endian"] {
+        let empty: String = (0..3000).map(|number| format!("element e{number} 2000000\n")).collect();
+        let error = read(head(format, empty));
+        assert!(error.contains("its 2000000 elements `e0` have no properties"), "{error}");
+    }
+    // With a property, all together.
+    let many: String = (0..7).map(|number| format!("element e{number} 2000000\nproperty uchar a\n")).collect();
+    let bytes = [head("binary_little_endian", many).into_bytes(), vec![0; 14_000_000]].concat();
+    let error = Mesh::read(&written(&folder, "many.ply", bytes), Some(1.0)).unwrap_err().to_string();
+    assert!(error.contains("14000000 rows or more"), "{error}");
+}
+
 /// The reader went round such nodes for ever.
 #[test]
 fn nodes_of_a_gltf_below_themselves_or_below_two_are_refused() {

@@ -5,6 +5,9 @@ use super::{MOST_TRIANGLES, Triangles};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
+/// Most rows of all elements together: as many corners as triangles may have, faces, and twice as many rows of other elements.
+const MOST_ROWS: usize = 6 * MOST_TRIANGLES;
+
 /// A row of a PLY file: a corner, a face, or something else.
 #[derive(Default)]
 struct Row {
@@ -42,7 +45,17 @@ pub(super) fn read(content: &[u8]) -> Result<Triangles, String> {
     let mut reader = Reader::new(content);
     let header = parser.read_header(&mut reader).map_err(|error| wrong(&error))?;
     let mut found = Triangles::default();
+    let mut rows_told = 0_usize;
     for (name, element) in &header.elements {
+        if element.properties.is_empty() && element.count > 0 {
+            return Err(format!("its {} elements `{name}` have no properties; leave them out", element.count));
+        }
+        rows_told = rows_told.saturating_add(element.count);
+        if rows_told > MOST_ROWS {
+            return Err(format!(
+                "it has {rows_told} rows or more, corners and faces together; {MOST_ROWS} are possible"
+            ));
+        }
         refuse_too_many(if name == "vertex" { element.count / 3 } else { element.count })?;
         let rows = parser.read_payload_for_element(&mut reader, element, &header).map_err(|error| wrong(&error))?;
         for (at, row) in rows.into_iter().enumerate() {
