@@ -212,6 +212,95 @@ fn a_glb_cannot_reach_beyond_its_data() {
     }
 }
 
+fn gltf_of(soup: &Soup) -> String {
+    let (_, content) = soup.in_all_formats().into_iter().find(|(name, _)| *name == "mesh.gltf").unwrap();
+    String::from_utf8(content).unwrap()
+}
+
+/// A glTF without its data, and these.
+fn gltf_apart() -> (String, Vec<u8>) {
+    let text = gltf_of(&cube([1.0; 3]));
+    let uri = text.split('"').find(|word| word.starts_with("data:")).unwrap();
+    let data = base64::engine::general_purpose::STANDARD.decode(uri.split_once(',').unwrap().1).unwrap();
+    (text.replace(uri, "URI"), data)
+}
+
+#[test]
+fn data_of_a_gltf_lie_in_its_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let (text, data) = gltf_apart();
+    std::fs::create_dir_all(folder.path().join("scene/data")).unwrap();
+    for name in ["outside.bin", "scene/mesh.bin", "scene/data/mesh.bin"] {
+        written(&folder, name, &data);
+    }
+    let read = |uri: &str| {
+        let path = written(&folder, "scene/mesh.gltf", text.replace("URI", uri));
+        Mesh::read(&path, None).map(|mesh| mesh.bounds()).map_err(|error| error.to_string())
+    };
+    for uri in ["mesh.bin", "./mesh.bin", "data/mesh.bin"] {
+        assert_eq!(read(uri), Ok([[0.0, -1.0, 0.0], [1.0, 0.0, 1.0]]), "{uri}");
+    }
+    let absolute = folder.path().join("outside.bin").display().to_string();
+    for uri in ["../outside.bin", "data/../../outside.bin", "/dev/zero", &absolute, ""] {
+        let error = read(uri).unwrap_err();
+        assert!(error.contains("mesh.gltf") && error.contains("does not lie in its folder"), "{error}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn data_without_an_end_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let endless = |name: &str| std::os::unix::fs::symlink("/dev/zero", folder.path().join(name)).unwrap();
+    endless("endless.bin");
+    let text = gltf_apart().0.replace("URI", "endless.bin");
+    let error = Mesh::read(&written(&folder, "mesh.gltf", text), None).unwrap_err().to_string();
+    assert!(error.contains("its buffers have more than 536870912 bytes"), "{error}");
+    endless("mesh.obj");
+    let error = Mesh::read(&folder.path().join("mesh.obj"), Some(1.0)).unwrap_err().to_string();
+    assert!(error.contains("too many bytes; 536870912 are possible"), "{error}");
+}
+
+#[test]
+fn only_the_first_buffer_of_a_glb_may_be_its_binary_part() {
+    let folder = tempfile::tempdir().unwrap();
+    let (text, data) = gltf_apart();
+    let read = |others: &str| {
+        let mut json =
+            text.replace("\"uri\":\"URI\",", "").replace("}],\"bufferViews\"", &format!("}}{others}],\"bufferViews\""));
+        json += &" ".repeat(json.len().next_multiple_of(4) - json.len());
+        let mut glb = [b"glTF".as_slice(), &2_u32.to_le_bytes(), &[0; 4]].concat();
+        for (kind, chunk) in [(b"JSON", json.as_bytes()), (b"BIN\0", &data)] {
+            glb.extend((chunk.len() as u32).to_le_bytes());
+            glb.extend(kind);
+            glb.extend(chunk);
+        }
+        let length = (glb.len() as u32).to_le_bytes();
+        glb[8..12].copy_from_slice(&length);
+        Mesh::read(&written(&folder, "mesh.glb", glb), None)
+            .map(|mesh| mesh.bounds())
+            .map_err(|error| error.to_string())
+    };
+    assert_eq!(read(""), Ok([[0.0, -1.0, 0.0], [1.0, 0.0, 1.0]]));
+    let error = read(&",{\"byteLength\":4}".repeat(3)).unwrap_err();
+    assert!(error.contains("its buffer 1 (counted from 0) has no uri"), "{error}");
+}
+
+/// A small file whose parts share one list of corners.
+#[test]
+fn corners_that_parts_share_are_limited() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = "{\"attributes\":{\"POSITION\":0},\"indices\":1}";
+    let text = gltf_of(&ball(1.0, 6));
+    assert!(text.contains(part), "{part}");
+    let parts = vec![part.replace("\"indices\":1", "\"indices\":2"); 200].join(",");
+    let one = ",{\"bufferView\":1,\"componentType\":5125,\"count\":3,\"type\":\"SCALAR\"}]}";
+    let many =
+        text.replacen(part, &parts, 1).replacen("\"type\":\"SCALAR\"}]}", &format!("\"type\":\"SCALAR\"}}{one}"), 1);
+    let error = Mesh::read(&written(&folder, "many.gltf", many), None).unwrap_err().to_string();
+    assert!(error.contains("its parts have more than 6000000 corners"), "{error}");
+}
+
 /// Rows without properties take no bytes: a small file said to have any number of them.
 #[test]
 fn elements_of_a_ply_without_properties_are_refused() {

@@ -9,11 +9,14 @@ pub(super) fn read(path: &Path, unit: Option<f64>) -> Result<Mesh, SolidError> {
     let unreadable = |source| SolidError::Unreadable { path: path.to_owned(), source };
     let wrong = |what: String| SolidError::Mesh { path: path.to_owned(), what };
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let too_long = |bytes: &str| {
+        wrong(format!(
+            "the file has {bytes} bytes; {MOST_BYTES} are possible. Make a coarser mesh: one finer than the particles is of no use"
+        ))
+    };
     let bytes = std::fs::metadata(path).map_err(unreadable)?.len();
     if bytes > MOST_BYTES {
-        return Err(wrong(format!(
-            "the file has {bytes} bytes; {MOST_BYTES} are possible. Make a coarser mesh: one finer than the particles is of no use"
-        )));
+        return Err(too_long(&bytes.to_string()));
     }
     if extension == "stl" {
         let mut head = Vec::new();
@@ -24,7 +27,7 @@ pub(super) fn read(path: &Path, unit: Option<f64>) -> Result<Mesh, SolidError> {
             .map_err(unreadable)?;
         refuse_too_many(stl::count_told(&head, bytes).unwrap_or(0)).map_err(wrong)?;
     }
-    let content = std::fs::read(path).map_err(unreadable)?;
+    let content = read_at_most(path, MOST_BYTES).map_err(unreadable)?.ok_or_else(|| too_long("too many"))?;
     let triangles = match extension.as_str() {
         "stl" => stl::read(content),
         "obj" => obj::read(&content),
@@ -48,6 +51,13 @@ pub(super) fn read(path: &Path, unit: Option<f64>) -> Result<Mesh, SolidError> {
     let Triangles { corners, triangles } = triangles.map_err(wrong)?;
     let corners = corners.into_iter().map(|corner| corner.map(|x| metres * x)).collect();
     Mesh::new(path, corners, triangles)
+}
+
+/// All bytes of a file; none where there are more than `most`, as of a device that has no end.
+pub(super) fn read_at_most(path: &Path, most: u64) -> std::io::Result<Option<Vec<u8>>> {
+    let mut content = Vec::new();
+    std::fs::File::open(path)?.take(most + 1).read_to_end(&mut content)?;
+    Ok((content.len() as u64 <= most).then_some(content))
 }
 
 /// Refuses more triangles than there is memory for.
