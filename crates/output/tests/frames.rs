@@ -253,6 +253,59 @@ fn damaged_particle_files_are_errors_that_name_the_file() {
     }
 }
 
+/// A frame with many columns, all at the offset of the first: a small file that would unpack to far more than it holds.
+#[test]
+fn arrays_that_share_their_data_are_refused() {
+    let (folder, files) = listed(FrameFormat::Vtp);
+    let path = folder.path().join("run/frames/frame_000000.vtp");
+    let whole = fs::read_to_string(&path).unwrap();
+    let element = whole.lines().find(|line| line.contains("Name=\"depth\"")).unwrap();
+    let with = |more: &str| {
+        fs::write(&path, whole.replacen(element, &format!("{element}\n{more}"), 1)).unwrap();
+        files.read(0).map(|frame| frame.sets.len()).map_err(|error| error.to_string())
+    };
+    assert_eq!(with(""), Ok(2));
+    assert!(with(element).unwrap_err().contains("two arrays `depth`"));
+    let many: Vec<String> = (0..700).map(|number| element.replace("depth", &format!("depth{number}"))).collect();
+    let error = with(&many.join("\n")).unwrap_err();
+    assert!(error.contains("frame_000000.vtp") && error.contains("is damaged"), "{error}");
+}
+
+/// A file of so many points, all numbers 0, packed as tightly as zlib can.
+fn zeros(points: usize) -> String {
+    let (mut elements, mut appended) = (String::new(), String::new());
+    for (name, components, size) in
+        [("set", 1, 4), ("id", 1, 8), ("velocity", 3, 24), ("radius", 1, 8), ("mass", 1, 8), ("position", 3, 24)]
+    {
+        let offset = appended.len();
+        elements += &format!("<DataArray Name=\"{name}\" NumberOfComponents=\"{components}\" offset=\"{offset}\"/>");
+        let mut packed = Vec::new();
+        let bytes = vec![0; points * size];
+        flate2::read::ZlibEncoder::new(bytes.as_slice(), flate2::Compression::best()).read_to_end(&mut packed).unwrap();
+        let head = [1, bytes.len() as u64, 0, packed.len() as u64].map(u64::to_le_bytes);
+        appended += &STANDARD.encode(head.as_flattened());
+        appended += &STANDARD.encode(&packed);
+    }
+    format!(
+        "<VTKFile><FieldData><DataArray Name=\"TimeValue\">0</DataArray><Array Name=\"set_names\">97 0</Array></FieldData>\
+         <Piece NumberOfPoints=\"{points}\"><PointData>{elements}</PointData></Piece><AppendedData>_{appended}</AppendedData>\
+         </VTKFile>"
+    )
+}
+
+#[test]
+fn points_that_unpack_from_next_to_nothing_are_refused() {
+    let (folder, files) = listed(FrameFormat::Vtp);
+    let path = folder.path().join("run/frames/frame_000000.vtp");
+    let read = |points: usize| {
+        fs::write(&path, zeros(points)).unwrap();
+        files.read(0).map(|frame| frame.sets[0].len()).map_err(|error| error.to_string())
+    };
+    assert_eq!(read(10_000), Ok(10_000));
+    let error = read(1_000_000).unwrap_err();
+    assert!(error.contains("frame_000000.vtp") && error.contains("too short for as many points"), "{error}");
+}
+
 #[test]
 fn a_collection_names_files_beside_it_only() {
     let (folder, _) = listed(FrameFormat::Vtp);
@@ -264,6 +317,28 @@ fn a_collection_names_files_beside_it_only() {
         let error = FrameFiles::list(&run, |_| 0.0).unwrap_err().to_string();
         assert!(error.contains(&format!("the file `{name}` does not stand beside it")), "{error}");
     }
+}
+
+#[test]
+fn many_sets_take_no_longer_than_their_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = RunFolder::create(&folder.path().join("run"), "", &[], FrameFormat::Vtp).unwrap();
+    let of = |number: usize| ParticleSet {
+        name: format!("s{number}"),
+        id: vec![number as u64],
+        position: vec![[number as f64; 3]],
+        velocity: vec![[0.0; 3]],
+        radius: vec![1.0],
+        mass: vec![1.0],
+        columns: vec![],
+    };
+    let sets: Vec<ParticleSet> = (0..100_000).map(of).collect();
+    run.write_frame(&Frame { time: 0.0, sets }, None).unwrap();
+    let files = FrameFiles::list(run.path(), |_| 0.0).unwrap();
+    let start = std::time::Instant::now();
+    let frame = files.read(0).unwrap();
+    assert!(frame.sets.iter().enumerate().all(|(number, set)| set.id == [number as u64]));
+    assert!(start.elapsed().as_secs_f64() < 4.0, "{:?}", start.elapsed());
 }
 
 #[test]

@@ -7,10 +7,20 @@ use corpuscle_model::{Frame, ParticleSet, Values};
 use flate2::read::ZlibDecoder;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
+use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::io::Read;
 
 /// Arrays that every file has; other arrays of point data are the model's own.
 const KNOWN: [&str; 5] = ["set", "id", "velocity", "radius", "mass"];
+
+/// Most bytes of arrays for each letter of the appended section. Numbers of particles alone, which differ from one to the next, keep files
+/// as they are written far below it.
+const MOST_UNPACKED: usize = 100;
+/// Bytes of arrays that any file may have.
+const ANY_UNPACKED: usize = 1 << 20;
+/// Letters of the first three numbers of an array, which are decoded twice.
+const START: usize = 32;
 
 /// An array in the appended section.
 struct Array {
@@ -35,9 +45,12 @@ pub(super) fn read(text: &str) -> Result<Frame, String> {
     let pieces = Pieces::of(text)?;
     let points = pieces.points.ok_or("it has no `Piece` with its number of points")?;
     let time = pieces.time.trim().parse().map_err(|_| format!("its TimeValue `{}` is not a number", pieces.time))?;
+    pieces.refuse_repeated()?;
+    let appended = Appended::new(&pieces);
     let bytes = |name: &str, size: usize| {
         let array = pieces.arrays.iter().find(|array| array.name == name).ok_or(format!("it has no array `{name}`"))?;
-        let bytes = decode(&pieces.appended, array.offset, points.saturating_mul(size))
+        let bytes = appended
+            .decode(array.offset, points.saturating_mul(size))
             .map_err(|what| format!("the array `{name}` is damaged: {what}"))?;
         if points.checked_mul(size) == Some(bytes.len()) {
             Ok(bytes)
@@ -62,13 +75,12 @@ pub(super) fn read(text: &str) -> Result<Frame, String> {
     });
     let own = own.collect::<Result<Vec<_>, String>>()?;
     let names = set_names(&pieces.set_names)?;
-    if let Some(other) =
-        set.iter().find(|number| usize::try_from(**number).map_or(true, |number| number >= names.len()))
-    {
-        return Err(format!("a point is of set {other}, and there are {} sets", names.len()));
+    let mut rows_of = vec![Vec::new(); names.len()];
+    for (row, number) in set.iter().enumerate() {
+        let rows = usize::try_from(*number).ok().and_then(|number| rows_of.get_mut(number));
+        rows.ok_or_else(|| format!("a point is of set {number}, and there are {} sets", names.len()))?.push(row);
     }
-    let of_set = |(number, name): (usize, &String)| {
-        let rows: Vec<usize> = (0..points).filter(|row| set[*row] as usize == number).collect();
+    let of_set = |(name, rows): (&String, &Vec<usize>)| {
         let pick = |values: &[f64]| rows.iter().map(|row| values[*row]).collect::<Vec<f64>>();
         let pick_vectors = |values: &[[f64; 3]]| rows.iter().map(|row| values[*row]).collect::<Vec<[f64; 3]>>();
         let picked = |(name, values): &(&str, Values)| {
@@ -88,7 +100,7 @@ pub(super) fn read(text: &str) -> Result<Frame, String> {
             columns: own.iter().filter_map(picked).collect(),
         }
     };
-    Ok(Frame { time, sets: names.iter().enumerate().map(of_set).collect() })
+    Ok(Frame { time, sets: names.iter().zip(&rows_of).map(of_set).collect() })
 }
 
 impl Pieces {
@@ -129,6 +141,15 @@ impl Pieces {
             }
         }
     }
+
+    /// Refuses arrays of one name, of which only the first could be told.
+    fn refuse_repeated(&self) -> Result<(), String> {
+        let mut names = BTreeSet::new();
+        match self.arrays.iter().find(|array| !names.insert(&array.name)) {
+            Some(array) => Err(format!("it has two arrays `{}`", array.name)),
+            None => Ok(()),
+        }
+    }
 }
 
 fn array(element: &BytesStart<'_>, of_points: bool) -> Result<Array, String> {
@@ -159,31 +180,65 @@ fn set_names(codes: &str) -> Result<Vec<String>, String> {
     Ok(text.split_terminator('\0').map(str::to_owned).collect())
 }
 
-/// The bytes of the array at an offset; never many more than `expected`, whatever a damaged file says.
-fn decode(appended: &str, offset: usize, expected: usize) -> Result<Vec<u8>, String> {
-    let cut = || "it ends too early".to_owned();
-    let plain = |from: usize, bytes: usize| {
-        let end = bytes.div_ceil(3).checked_mul(4).and_then(|letters| letters.checked_add(from));
-        let text = end.and_then(|end| appended.get(from..end)).ok_or_else(cut)?;
-        Ok::<_, String>((STANDARD.decode(text).map_err(|error| error.to_string())?, from + text.len()))
-    };
-    // Count of blocks, size of a block, size of a short last block, then the compressed size of each.
-    let (start, _) = plain(offset, 24)?;
-    let count = words::<8>(&start).map(u64::from_le_bytes).next().unwrap_or(0) as usize;
-    let length = count.checked_add(3).and_then(|words| words.checked_mul(8)).ok_or_else(cut)?;
-    let (header, from) = plain(offset, length)?;
-    let sizes: Vec<usize> = words::<8>(&header).skip(3).map(|word| u64::from_le_bytes(word) as usize).collect();
-    let total = sizes.iter().try_fold(0_usize, |sum, size| sum.checked_add(*size)).ok_or_else(cut)?;
-    let (blocks, _) = plain(from, total)?;
-    let mut bytes = Vec::new();
-    let mut rest = blocks.as_slice();
-    for size in sizes {
-        let (block, others) = rest.split_at_checked(size).ok_or_else(cut)?;
-        rest = others;
-        let room = expected.saturating_add(1).saturating_sub(bytes.len()) as u64;
-        ZlibDecoder::new(block).take(room).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+/// The appended section, with what may still be decoded of it: each letter once, however many arrays name it.
+struct Appended<'a> {
+    text: &'a str,
+    /// Letters.
+    packed: Cell<usize>,
+    /// Bytes of arrays.
+    unpacked: Cell<usize>,
+}
+
+impl<'a> Appended<'a> {
+    fn new(pieces: &'a Pieces) -> Self {
+        let text = pieces.appended.as_str();
+        let packed = Cell::new(text.len() + START * pieces.arrays.len());
+        Self {
+            text,
+            packed,
+            unpacked: Cell::new(ANY_UNPACKED.saturating_add(text.len().saturating_mul(MOST_UNPACKED))),
+        }
     }
-    Ok(bytes)
+
+    /// The bytes of base64 at an offset, and where it ends.
+    fn plain(&self, from: usize, bytes: usize) -> Result<(Vec<u8>, usize), String> {
+        let end = bytes.div_ceil(3).checked_mul(4).and_then(|letters| letters.checked_add(from));
+        let text = end.and_then(|end| self.text.get(from..end)).ok_or_else(cut)?;
+        spend(&self.packed, text.len()).ok_or("its data are those of another array, too")?;
+        Ok((STANDARD.decode(text).map_err(|error| error.to_string())?, from + text.len()))
+    }
+
+    /// The bytes of the array at an offset; never many more than `expected`, whatever a damaged file says.
+    fn decode(&self, offset: usize, expected: usize) -> Result<Vec<u8>, String> {
+        spend(&self.unpacked, expected).ok_or("the file is too short for as many points and arrays as it names")?;
+        // Count of blocks, size of a block, size of a short last block, then the compressed size of each.
+        let (start, _) = self.plain(offset, 24)?;
+        let count = words::<8>(&start).map(u64::from_le_bytes).next().unwrap_or(0) as usize;
+        let length = count.checked_add(3).and_then(|words| words.checked_mul(8)).ok_or_else(cut)?;
+        let (header, from) = self.plain(offset, length)?;
+        let sizes: Vec<usize> = words::<8>(&header).skip(3).map(|word| u64::from_le_bytes(word) as usize).collect();
+        let total = sizes.iter().try_fold(0_usize, |sum, size| sum.checked_add(*size)).ok_or_else(cut)?;
+        let (blocks, _) = self.plain(from, total)?;
+        let mut bytes = Vec::new();
+        let mut rest = blocks.as_slice();
+        for size in sizes {
+            let (block, others) = rest.split_at_checked(size).ok_or_else(cut)?;
+            rest = others;
+            let room = expected.saturating_add(1).saturating_sub(bytes.len()) as u64;
+            ZlibDecoder::new(block).take(room).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        }
+        Ok(bytes)
+    }
+}
+
+fn cut() -> String {
+    "it ends too early".into()
+}
+
+/// Takes from what is left; none where that is less.
+fn spend(left: &Cell<usize>, much: usize) -> Option<()> {
+    left.set(left.get().checked_sub(much)?);
+    Some(())
 }
 
 fn words<const N: usize>(bytes: &[u8]) -> impl Iterator<Item = [u8; N]> {
