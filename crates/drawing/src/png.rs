@@ -99,10 +99,13 @@ fn encode(
 /// The most bytes that Deflate packs into one: what a file says to hold beyond that it cannot.
 const MOST_PACKED: usize = 1032;
 
+/// Most pixels of a file that has fewer bytes than pixels: those of a photo have more.
+const MOST_PIXELS: u64 = 100_000_000;
+
 /// A PNG file of any kind as width, height, and red, green, blue and opacity of each pixel, row by row.
 ///
 /// # Errors
-/// What cannot be read; a file that is too short for the pixels that it names.
+/// What cannot be read; a file that is too short for the pixels that it names, or that unpacks to far more pixels than it has bytes.
 pub fn decode_rgba(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
     let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
@@ -111,6 +114,13 @@ pub fn decode_rgba(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
     let packed = header.raw_row_length().saturating_mul(header.height as usize);
     if packed / MOST_PACKED > bytes.len() {
         return Err(format!("{} x {} pixels cannot be in {} bytes", header.width, header.height, bytes.len()));
+    }
+    let pixels = u64::from(header.width) * u64::from(header.height);
+    if pixels > MOST_PIXELS.max(bytes.len() as u64) {
+        return Err(format!(
+            "it has {} x {} pixels, far more than bytes; {MOST_PIXELS} are possible",
+            header.width, header.height
+        ));
     }
     let colours = header.palette.as_ref().map_or(0, |palette| palette.len());
     let opacities = header.trns.as_ref().map_or(0, |opacities| opacities.len());
@@ -182,6 +192,19 @@ mod tests {
         let encoder = png::Encoder::new(&mut long, 100_000, 100_000);
         encoder.write_header().unwrap().write_chunk(png::chunk::IDAT, &[0x78, 0x01]).unwrap();
         assert!(decode_rgba(&long).unwrap_err().starts_with("100000 x 100000 pixels cannot be in"));
+    }
+
+    #[test]
+    fn a_small_file_of_very_many_pixels_is_refused() {
+        let [width, height] = [20_000, 10_000];
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, width, height);
+        encoder.set_depth(png::BitDepth::One);
+        let row = (width as usize).div_ceil(8);
+        encoder.write_header().unwrap().write_image_data(&vec![0; row * height as usize]).unwrap();
+        assert!(file.len() < 1 << 20, "{}", file.len());
+        let error = decode_rgba(&file).unwrap_err();
+        assert!(error.contains("20000 x 10000 pixels") && error.contains("100000000 are possible"), "{error}");
     }
 
     #[test]
