@@ -19,12 +19,20 @@ pub(crate) struct Hash<const D: usize> {
 
 const NONE: u32 = u32::MAX;
 
+/// Most cells for few balls: 64 MiB.
+const MOST_CELLS: usize = 1 << 24;
+
 impl<const D: usize> Hash<D> {
     /// For about `balls` balls of diameters up to `largest`, in a box.
     pub fn new(low: [f64; D], length: [f64; D], period: [f64; D], largest: f64, balls: usize) -> Self {
         let volume: f64 = length.iter().product();
         let side = largest.max(pow(volume / (balls + 1) as f64, 1.0 / D as f64));
-        let count = length.map(|length| ((length / side) as usize).clamp(1, 1 << 20));
+        let mut count = length.map(|length| ((length / side) as usize).clamp(1, 1 << 20));
+        // In a flat or thin box that is empty but for few balls there would be far more cells than balls.
+        while count.iter().product::<usize>() > MOST_CELLS.max(8 * balls) {
+            let longest = (0..D).fold(0, |longest, axis| if count[axis] > count[longest] { axis } else { longest });
+            count[longest] /= 2;
+        }
         let size = std::array::from_fn(|axis| length[axis] / count[axis] as f64);
         let heads = vec![NONE; count.iter().product()];
         Hash { low, size, count, period, slid: 0.0, heads, next: Vec::new(), balls: Vec::new() }
@@ -183,5 +191,26 @@ impl<const D: usize> Hash<D> {
             apart * apart
         };
         (0..D).map(square).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_of_flat_and_thin_boxes_take_little_memory() {
+        for length in [[1e12, 1e12, 1.0], [1e30, 1e30, 1e-30], [1e12, 1.0, 1e-12], [1e6; 3]] {
+            let mut hash = Hash::new([0.0; 3], length, [0.0; 3], 0.5, 1);
+            assert!(hash.heads.len() <= MOST_CELLS, "{length:?}: {}", hash.heads.len());
+            assert!(
+                hash.size.iter().zip(length).all(|(size, length)| *size >= 0.5 || *size == length),
+                "{:?}",
+                hash.size
+            );
+            let middle = length.map(|length| 0.5 * length);
+            hash.add(middle, 0.25);
+            assert!(hash.overlap(&middle, 0.25).is_some() && hash.is_clear(&[0.0; 3], 0.25) == (middle[0] > 1.0));
+        }
     }
 }
