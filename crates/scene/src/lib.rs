@@ -27,7 +27,7 @@ mod write;
 mod written;
 
 pub use builtin::{Builtin, builtin, scenes};
-pub use check::{Check, Checked};
+pub use check::{Check, Checked, is_name};
 pub use dew::Dew;
 pub use error::{Place, Problem, SceneError};
 pub use expression::{Expression, ExpressionError};

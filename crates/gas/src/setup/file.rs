@@ -2,13 +2,15 @@
 
 use super::Ball;
 use corpuscle_model::ModelError;
-use corpuscle_scene::read_text;
+use corpuscle_scene::{is_name, read_text};
 use std::path::Path;
 
 /// Names of columns that say the same: those of `corpuscle run --frames csv` first.
 const PLACE: [&[&str]; 3] = [&["x", "pos_0"], &["y", "pos_1"], &["z", "pos_2"]];
 const VELOCITY: [&[&str]; 3] = [&["vx", "velo_0", "vel_0"], &["vy", "velo_1", "vel_1"], &["vz", "velo_2", "vel_2"]];
 const NAME: &[&str] = &["set", "species", "name"];
+/// Longest name of balls: names of charts' files have it in them.
+const LONGEST_NAME: usize = 100;
 
 /// Reads the balls of a file, whose name ends in `.xyz`, `.extxyz` or `.csv`. Needed are places, radius and mass; velocities that are not there are 0, names
 /// that are not there `balls`.
@@ -100,8 +102,15 @@ impl<'a> Table<'a> {
             if above.map(number).transpose()?.is_some_and(|z| z != 0.0) {
                 return Err(format!(":{line}: z is not 0, and the gas has two dimensions"));
             }
+            let name = name.map_or("balls", |column| words[column]);
+            if !is_name(name) || name.len() > LONGEST_NAME {
+                return Err(format!(
+                    ":{line}: the name `{}` must be of letters, digits, spaces, `_` and `-`, {LONGEST_NAME} bytes at most",
+                    name.escape_debug()
+                ));
+            }
             let mut ball = Ball {
-                name: name.map_or("balls", |column| words[column]).to_owned(),
+                name: name.to_owned(),
                 position: [0.0; D],
                 velocity: [0.0; D],
                 radius: number(radius)?,
@@ -120,6 +129,7 @@ impl<'a> Table<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn balls<const D: usize>(name: &str, text: &str) -> Result<Vec<Ball<D>>, String> {
         let folder = tempfile::tempdir().unwrap();
@@ -150,6 +160,17 @@ mod tests {
             ("a.csv", "x,y,radius,mass\n1,2,0.5,1\n1,two,0.5,1\n", "a.csv:3: `two` (y) is not a finite number"),
             ("a.csv", "x,y,radius,mass\n1,nan,0.5,1\n", "`nan` (y) is not a finite number"),
             ("a.csv", "x,y,z,radius,mass\n1,2,3,0.5,1\n", "z is not 0"),
+            (
+                "a.csv",
+                "set,x,y,radius,mass\na,1,2,0.5,1\na/b,2,2,0.5,1\n",
+                "a.csv:3: the name `a/b` must be of letters",
+            ),
+            ("a.csv", "set,x,y,radius,mass\n,1,2,0.5,1\n", "a.csv:2: the name `` must be of letters"),
+            (
+                "a.xyz",
+                "1\nProperties=species:S:1:pos:R:3:radius:R:1:mass:R:1\n../x 1 1 0 1 1\n",
+                "a.xyz:3: the name `../x`",
+            ),
             ("a.xyz", "two\n", "a.xyz:1: here must be the number"),
             ("a.xyz", "1\nnothing\nC 0 0 0\n", "a.xyz:2: here must be what stands in the columns"),
             ("a.xyz", "1\nProperties=pos:R\n", "column `pos:R`"),

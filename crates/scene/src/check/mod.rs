@@ -36,6 +36,12 @@ impl Scene {
     }
 }
 
+/// Whether a name is fit for headers of tables and for names of files: letters, digits, spaces, `_` and `-`.
+pub fn is_name(name: &str) -> bool {
+    let fits = |c: char| c.is_alphanumeric() || " _-".contains(c);
+    !name.trim().is_empty() && name.chars().all(fits)
+}
+
 /// Checks of a scene's values, which messages show by their keys, as in `"gas.species.0.count"`.
 pub struct Check {
     values: Value,
@@ -95,10 +101,7 @@ impl Check {
     /// # Errors
     /// The key, its value and what must be.
     pub fn name(&self, key: &str, name: &str) -> Checked {
-        let fit = |c: char| c.is_alphanumeric() || " _-".contains(c);
-        self.require(key, !name.trim().is_empty() && name.chars().all(fit), || {
-            "a name must be of letters, digits, spaces, `_` and `-`".into()
-        })
+        self.require(key, is_name(name), || "a name must be of letters, digits, spaces, `_` and `-`".into())
     }
 
     /// Refuses values over time whose times do not rise.
