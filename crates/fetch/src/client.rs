@@ -156,7 +156,8 @@ fn content_range(text: &str) -> Option<(Range<u64>, u64)> {
     let (range, total) = text.trim().strip_prefix("bytes ")?.split_once('/')?;
     let (first, last) = range.split_once('-')?;
     let (first, last): (u64, u64) = (first.parse().ok()?, last.parse().ok()?);
-    (first <= last).then_some((first..last + 1, total.parse().ok()?))
+    let end = last.checked_add(1)?;
+    (first <= last).then_some((first..end, total.parse().ok()?))
 }
 
 /// True where the bytes returned are those requested, up to the end of the file.
@@ -181,7 +182,9 @@ mod tests {
     #[test]
     fn content_ranges_are_read() {
         assert_eq!(content_range("bytes 0-99/1234"), Some((0..100, 1234)));
-        for text in ["bytes 9-3/1234", "bytes 0-99/*", "items 0-9/10", "bytes */10", ""] {
+        for text in
+            ["bytes 9-3/1234", "bytes 0-99/*", "items 0-9/10", "bytes */10", "", "bytes 0-18446744073709551615/9"]
+        {
             assert_eq!(content_range(text), None, "{text}");
         }
     }
