@@ -6,7 +6,6 @@ use corpuscle_drawing::png::decode_rgba;
 use corpuscle_gpu::Image;
 use corpuscle_scene::{read_bytes, read_text};
 use corpuscle_terrain::{Photo, Terrain, Window};
-use std::fs;
 use std::path::Path;
 
 /// Endings of world files of a PNG file.

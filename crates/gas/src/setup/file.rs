@@ -129,7 +129,6 @@ impl<'a> Table<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs;
 
     fn balls<const D: usize>(name: &str, text: &str) -> Result<Vec<Ball<D>>, String> {
         let folder = tempfile::tempdir().unwrap();
