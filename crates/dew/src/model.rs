@@ -11,7 +11,7 @@ use corpuscle_model::{
     Chart, Column, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Surface, Values,
 };
 use corpuscle_processes::Command;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 impl Dew {
     /// Time from the state to the time shown, s.
@@ -121,15 +121,7 @@ impl Model for Dew {
             return corpuscle_gpu::wait_for(self.advance_on_gpu(time, stop));
         }
         self.processes.broadcast(&Command::Advance(time));
-        while self.state.time + self.state.time_step <= time {
-            if self.processes.any(stop.load(Ordering::Relaxed)) {
-                self.shown = self.shown.max(self.state.time);
-                return Ok(());
-            }
-            self.step()?;
-        }
-        self.shown = time;
-        Ok(())
+        self.advance_on_cpu(time, stop)
     }
 
     #[cfg(feature = "gpu")]
@@ -225,6 +217,7 @@ impl Model for Dew {
         if self.domain.is_some() && state.overrides.is_some() {
             return Err(refused("dew was changed while it ran: resume it without `mpirun`".into()));
         }
+        self.check_state(&state, drops.as_ref())?;
         let fits = match (&mut self.wetting, drops) {
             (None, None) => true,
             (Some(wetting), Some(drops)) => wetting.restore(drops),

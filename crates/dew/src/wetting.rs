@@ -50,6 +50,13 @@ pub(crate) struct WettingState {
     fogging: Fogging,
 }
 
+impl WettingState {
+    /// The drops.
+    pub fn drops(&self) -> &DropState {
+        &self.drops
+    }
+}
+
 impl Wetting {
     fn new(drops: Drops, particles: Vec<u32>) -> Self {
         let solids = drops.solids().len();

@@ -3,6 +3,7 @@
 mod accelerated;
 mod live_change;
 mod motion;
+mod not_finite;
 #[cfg(feature = "gpu")]
 mod on_gpu;
 mod scatter;
@@ -294,10 +295,11 @@ impl Dew {
         self.state.steps += 1;
         self.state.particle_steps += self.air_count() as u64;
         self.hold();
-        self.update_drops(self.air_count());
         let next = self.next_step(&self.work.stiff, extremes);
         self.state.time_step = next;
-        self.check_step(extremes.speed_squared.sqrt(), step, next)
+        self.check_step(extremes.speed_squared.sqrt(), step, next)?;
+        self.update_drops(self.air_count());
+        self.check_drops()
     }
 
     /// The shortest step with which the run goes on, s.
@@ -311,14 +313,7 @@ impl Dew {
         if next.is_finite() && next > self.shortest_step() {
             return Ok(());
         }
-        Err(ModelError::Breakdown {
-            time: self.state.time,
-            step: self.state.steps,
-            what: format!(
-                "the time step fell from {step:.3e} s to {next:.3e} s. Try a higher speed of sound, or look in the last \
-                 frame for the place where the air is fast or hot"
-            ),
-        })
+        Err(self.too_short(step, next))
     }
 
     /// Sets the temperature of solids for which it is prescribed over time.
@@ -344,7 +339,8 @@ impl Dew {
 
     /// Refuses air above Mach 1 of the artificial speed of sound, where the weakly compressible assumption fails. Where no drops are laid, any drive is accepted.
     fn refuse_what_is_faster_than_sound(&self, fastest: f64) -> Result<(), ModelError> {
-        if fastest <= self.air.sound_speed || self.wetting.is_none() {
+        // A speed that is not a number is refused for that, with the time step.
+        if fastest.is_nan() || fastest <= self.air.sound_speed || self.wetting.is_none() {
             return Ok(());
         }
         let has_outlet = self.room.faces.as_flattened().contains(&Face::Outlet);
@@ -353,15 +349,12 @@ impl Dew {
         } else {
             ""
         };
-        Err(ModelError::Breakdown {
-            time: self.state.time,
-            step: self.state.steps,
-            what: format!(
-                "air goes at {fastest:.3} m/s, faster than sound in this model ({:.3} m/s). Let air in more slowly, give it more room \
-                 round the solids, or a smaller dew.spacing_m{where_it_leaves}",
-                self.air.sound_speed
-            ),
-        })
+        let position = self.fastest_position().map_or(String::new(), |position| format!(" {position}"));
+        Err(self.broken(format!(
+            "air goes at {fastest:.3} m/s{position}, faster than sound in this model ({:.3} m/s). Let air in more slowly, give it more room \
+             round the solids, or a smaller dew.spacing_m{where_it_leaves}",
+            self.air.sound_speed
+        )))
     }
 
     /// The air in the room.

@@ -52,15 +52,19 @@ impl Extremes {
         all.into_iter().map(of).fold(Self::default(), Self::or)
     }
 
-    /// The larger of both; what is not a number stays none.
+    /// The larger of both.
     fn or(self, other: Self) -> Self {
-        let larger = |a: f64, b: f64| if a > b || a.is_nan() { a } else { b };
         Self {
             speed_squared: larger(self.speed_squared, other.speed_squared),
             acceleration_squared: larger(self.acceleration_squared, other.acceleration_squared),
             diffusion: larger(self.diffusion, other.diffusion),
         }
     }
+}
+
+/// The larger of two numbers; NaN where one of them is, unlike `f64::max`.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
 }
 
 impl Dew {
@@ -198,7 +202,9 @@ impl Dew {
     /// The largest stable time step (CFL): sound must not cross a smoothing length, nor diffusion overshoot.
     pub(super) fn next_step(&self, stiff: &[f64], extremes: Extremes) -> f64 {
         let [speed, acceleration] = [extremes.speed_squared, extremes.acceleration_squared].map(f64::sqrt);
-        let stiffest = stiff.iter().copied().fold(extremes.diffusion, f64::max);
+        let stiffest = stiff.iter().copied().fold(extremes.diffusion, larger);
+        // Infinite where it is not a number, or a value of the air is not: a least number of several processes could lose it.
+        let stiffest = if stiffest.is_nan() || self.has_not_finite() { f64::INFINITY } else { stiffest };
         let stiffest = -self.processes.least(-stiffest);
         let by_sound = self.step_by_sound(speed);
         let by_force = ACCELERATION_LIMIT * (self.scale.spacing / acceleration.max(1e-30)).sqrt();

@@ -1,6 +1,7 @@
 //! Heat, vapour and water between air and solids in a step.
 
 use super::accelerated::Taken;
+use super::motion::larger;
 use super::{Dew, State};
 use crate::air::{Particle, Rates, Role, order_of};
 use crate::exchange::{Exchange, ToAir, Work, excess};
@@ -80,7 +81,7 @@ impl Dew {
             self.state.heat_flow[self.solids.particles[site.particle as usize].body as usize] += given.heat;
             // What rounding leaves of the last of the water is nothing.
             let water = &mut self.state.water_on[site.particle as usize];
-            *water = (*water + factor * step * given.water).max(0.0);
+            *water = larger(*water + factor * step * given.water, 0.0);
         }
         for (i, &heat) in heat.iter().enumerate() {
             of_solids[i] *= factor / self.solids.heat_capacity(i);

@@ -196,6 +196,11 @@ impl Drops {
         &self.state.drops
     }
 
+    /// Mass of the drop at each site that is not resolved yet, kg.
+    pub fn unseen_masses(&self) -> &[f64] {
+        &self.state.unseen
+    }
+
     /// The solids that they are on.
     pub fn solids(&self) -> &[Solid] {
         &self.solids

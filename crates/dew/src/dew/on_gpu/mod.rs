@@ -4,11 +4,9 @@ mod measured;
 mod on_device;
 
 use super::{Dew, State};
-use crate::air::Part;
 use crate::faces::deepest_outside;
 use crate::gpu::{BatchResult, Crossed, GpuSolver, MOST_FANS};
 use crate::room::Face;
-use crate::wetting::WettingState;
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming, wait_for};
 use corpuscle_model::{Advance, AdvanceObserver, CpuOnly, Glance, GpuModel, Model, ModelError};
 use on_device::FrameRequest;
@@ -157,30 +155,27 @@ impl Dew {
         self.advance_and_download(async |dew| dew.go_on_gpu(time, stop).await).await
     }
 
-    /// Brings the state back after steps that may break down. Where the GPU fails, it is that of before.
+    /// Brings the state back after steps that may break down. Where they do, or the GPU fails, it is that of before.
     async fn advance_and_download(
         &mut self,
         advance: impl AsyncFnOnce(&mut Self) -> Result<Option<ModelError>, GpuError>,
     ) -> Result<(), ModelError> {
-        let before = (self.shown, self.state.clone(), self.wetting.as_ref().map(|wetting| wetting.state()));
+        let before = self.before();
         let broken = match advance(self).await {
             Ok(broken) => self.download_from_gpu().await.map(|()| broken),
             Err(error) => Err(error),
         };
-        match broken {
+        match broken.map(|broken| broken.or_else(|| self.check_finite().err())) {
             Ok(None) => Ok(()),
-            Ok(Some(broken)) => Err(broken),
+            Ok(Some(broken)) => {
+                self.go_back_to(before);
+                self.upload_to_gpu(false)?;
+                Err(broken)
+            }
             Err(error) => {
                 self.go_back_to(before);
                 Err(failed(&error))
             }
-        }
-    }
-
-    fn go_back_to(&mut self, (shown, state, drops): (f64, State, Option<WettingState>)) {
-        (self.shown, self.state) = (shown, state);
-        if let (Some(wetting), Some(drops)) = (&mut self.wetting, drops) {
-            wetting.restore(drops);
         }
     }
 
@@ -197,6 +192,7 @@ impl Dew {
             self.book_batch(&progress);
             self.update_drops_beside_gpu().await?;
             if progress.broken {
+                self.download_from_gpu().await?;
                 let last = if progress.steps > 0 { progress.last_step } else { progress.step };
                 return Ok(self.check_step(progress.fastest, last, progress.step).err());
             }
@@ -253,12 +249,7 @@ impl Dew {
     async fn download_from_gpu(&mut self) -> Result<(), GpuError> {
         let Some(solver) = &mut self.gpu_solver else { return Ok(()) };
         solver.download(&mut self.state).await?;
-        if self.layers.iter().any(Option::is_some) {
-            // Gauges of layers need pairs of air and wall.
-            self.arrangement.arrange(&mut self.state.air, &[], &self.room, self.scale.h(), Part::WHOLE);
-            self.contact.update(&self.arrangement, &self.scale);
-            self.ghosts.update(&self.arrangement, &self.scale);
-        }
+        self.find_pairs_for_layers();
         Ok(())
     }
 
