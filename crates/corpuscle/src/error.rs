@@ -75,6 +75,7 @@ impl Error {
                 error,
                 OutputError::Write { .. }
                     | OutputError::GaugeCount { .. }
+                    | OutputError::NotFinite { .. }
                     | OutputError::Map(TerrainError::Write { .. })
             ),
         }

@@ -17,13 +17,15 @@ struct Counter {
     /// The step at which it stops itself, or breaks down.
     stop_at: Option<u64>,
     break_at: Option<u64>,
+    /// The step from which on it shows a velocity that is not a number, and does not notice.
+    nan_from: Option<u64>,
 }
 
 const STEP: f64 = 0.01;
 
 impl Counter {
     fn new() -> Self {
-        Self { shown: 0.0, steps: 0, value: 0.3, stop_at: None, break_at: None }
+        Self { shown: 0.0, steps: 0, value: 0.3, stop_at: None, break_at: None, nan_from: None }
     }
 }
 
@@ -64,11 +66,12 @@ impl Model for Counter {
     fn frame(&self) -> Frame {
         let position = vec![[self.value, self.shown, 0.0]];
         let one = vec![1.0];
+        let speed = if self.nan_from.is_some_and(|step| self.steps >= step) { f64::NAN } else { 0.0 };
         let set = ParticleSet {
             name: "water".into(),
             id: vec![7],
             position,
-            velocity: vec![[0.0; 3]],
+            velocity: vec![[speed, 0.0, 0.0]],
             radius: one.clone(),
             mass: one,
             columns: Vec::new(),
@@ -241,6 +244,23 @@ fn a_breakdown_is_told_and_the_sinks_are_finished() {
     assert!(error.to_string().contains("on purpose") && !error.is_refusal(), "{error}");
     assert_eq!(notes.finished, [Status::Failed]);
     assert_eq!(notes.frames, [0.0, 0.5, 1.0]);
+}
+
+#[test]
+fn a_frame_with_a_value_that_is_not_a_number_is_not_written_and_ends_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run");
+    let mut simulation = simulation(Counter { nan_from: Some(60), ..Counter::new() });
+    let mut recorder = Recorder::create(&path, &simulation, FrameFormat::Csv).unwrap();
+    let error = run(&mut simulation, &mut recorder).unwrap_err();
+    let told = error.to_string();
+    let is_told = ["velocity of `water` 7 at [", "t = 1 s", "NaN"].iter().all(|word| told.contains(word));
+    assert!(is_told && !error.is_refusal(), "{told}");
+    let mut frames: Vec<_> =
+        std::fs::read_dir(path.join("frames")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    frames.sort();
+    assert_eq!(frames, ["frame_000000.csv", "frame_000001.csv"]);
+    assert_eq!(Summary::read(&path).unwrap().status, Status::Failed);
 }
 
 #[test]

@@ -70,6 +70,15 @@ pub enum OutputError {
         /// What is wrong, where, and what would be right.
         what: String,
     },
+    /// A value that was to be written is not finite.
+    #[error(
+        "{what}: it is not written, and the run ends; what was written before stays readable. Look in the last frame at what is \
+         there; smaller particles or a smaller time step may help"
+    )]
+    NotFinite {
+        /// The quantity, where it is, and its value.
+        what: String,
+    },
     /// A map cannot be written.
     #[error(transparent)]
     Map(#[from] TerrainError),

@@ -8,6 +8,7 @@ mod charts;
 mod checkpoint;
 mod error;
 mod extent;
+mod finite;
 mod frames;
 mod gauge_chart;
 mod gauges;

@@ -2,6 +2,7 @@
 
 use crate::charts::{read_paths, write_chart, write_paths};
 use crate::checkpoint::{Progress, checksum};
+use crate::finite::{check_frame, check_map, check_surface};
 use crate::frames::{FrameFormat, write_pvd, write_surface};
 use crate::gauges::GaugeWriter;
 use crate::maps::{self, SNAPSHOT};
@@ -142,9 +143,10 @@ impl RunFolder {
     /// Adds a particle frame: `frames/frame_NNNNNN.vtp` and `frames.pvd`, or `.csv`, or `.xyz`, numbered from 0. `container` is the box round the particles.
     ///
     /// # Errors
-    /// [`OutputError::Write`].
+    /// [`OutputError::Write`]; [`OutputError::NotFinite`].
     pub fn write_frame(&mut self, frame: &Frame, container: Option<&Container>) -> Result<(), OutputError> {
         if self.frame_format != FrameFormat::None {
+            check_frame(frame)?;
             let folder = self.subfolder("frames")?;
             self.frame_format.write(&folder, self.frame_times.len(), frame, container)?;
         }
@@ -164,9 +166,10 @@ impl RunFolder {
     /// `maps/times.csv`. A model without this map writes none.
     ///
     /// # Errors
-    /// [`OutputError::Write`].
+    /// [`OutputError::Write`]; [`OutputError::NotFinite`].
     pub fn write_snapshot(&mut self, time: f64, maps: &[Map], terrain: &Terrain) -> Result<(), OutputError> {
         let Some(map) = maps.iter().find(|map| map.name == SNAPSHOT) else { return Ok(()) };
+        check_map(map)?;
         let folder = self.subfolder("maps")?;
         maps::write_map(&maps::snapshot_path(&folder, self.map_times.len()), terrain.map_grid(), &map.values)?;
         self.map_times.push(time);
@@ -177,8 +180,9 @@ impl RunFolder {
     /// extent `maps/extent.geojson` and its run-up line `maps/run_up.geojson`.
     ///
     /// # Errors
-    /// [`OutputError::Write`].
+    /// [`OutputError::Write`]; [`OutputError::NotFinite`].
     pub fn write_final_maps(&self, maps: &[Map], terrain: &Terrain) -> Result<(), OutputError> {
+        maps.iter().try_for_each(check_map)?;
         let folder = self.subfolder("maps")?;
         for map in maps.iter().filter(|map| map.name != SNAPSHOT) {
             maps::write_map(&folder.join(format!("{}.tif", map.name)), terrain.map_grid(), &map.values)?;
@@ -196,12 +200,13 @@ impl RunFolder {
     /// writes none.
     ///
     /// # Errors
-    /// [`OutputError::Write`].
+    /// [`OutputError::Write`]; [`OutputError::NotFinite`].
     pub fn write_surfaces(&self, surfaces: &[Surface]) -> Result<(), OutputError> {
         if surfaces.is_empty() {
             return Ok(());
         }
         let folder = self.subfolder("maps")?;
+        surfaces.iter().try_for_each(check_surface)?;
         surfaces.iter().try_for_each(|surface| {
             let name = format!("{}.vtp", surface.name.replace(' ', "_"));
             write_whole(&folder.join(name), |file| write_surface(file, surface))
