@@ -3,6 +3,7 @@
 //! What is written goes to a temporary file in the same folder, which takes the place of the old one only when all of
 //! it is on the disk: a reader gets the old content or the new, never a part.
 
+use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -29,9 +30,7 @@ impl WholeFile {
     /// What the system says, as when the disk is full; what stood at the path before is untouched then.
     pub fn finish(self) -> io::Result<()> {
         let file = self.buffer.into_inner().map_err(io::IntoInnerError::into_error)?;
-        file.as_file().sync_data()?;
-        file.persist(self.path).map_err(|error| error.error)?;
-        Ok(())
+        put_in_place(file, &self.path)
     }
 }
 
@@ -71,9 +70,36 @@ pub fn write_whole_by_path<E: From<io::Error>>(
 ) -> Result<(), E> {
     let file = temporary_beside(path)?;
     write(file.path())?;
+    Ok(put_in_place(file, path)?)
+}
+
+/// Puts a temporary file in its place once its content is on the disk, and then the new name.
+fn put_in_place(file: NamedTempFile, path: &Path) -> io::Result<()> {
     file.as_file().sync_data()?;
     file.persist(path).map_err(|error| error.error)?;
-    Ok(())
+    sync_folder(folder_of(path))
+}
+
+/// Puts the names in a folder on the disk. Some file systems have no way to; elsewhere than on Unix a folder cannot be opened.
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
+        Err(error)
+            if matches!(
+                error.kind(),
+                io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported | io::ErrorKind::PermissionDenied
+            ) =>
+        {
+            Ok(())
+        }
+        synced => synced,
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// How the names of temporary files begin.
@@ -91,12 +117,11 @@ pub fn clear_unfinished(folder: &Path) -> io::Result<()> {
 
 /// A temporary file in the folder of `path`, with the permissions that a plain new file would get.
 fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(IN_THE_MAKING);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
+    builder.tempfile_in(folder_of(path))
 }
 
 #[cfg(test)]

@@ -53,6 +53,11 @@ impl GaugeWriter {
         Ok(())
     }
 
+    /// Puts all rows on the disk.
+    pub(crate) fn sync(&self) -> Result<(), OutputError> {
+        self.file.sync_data().map_err(OutputError::write(&self.path))
+    }
+
     /// Rows written so far.
     pub(crate) fn rows(&self) -> usize {
         self.rows

@@ -231,6 +231,8 @@ impl RunFolder {
     /// [`OutputError::Write`]; the checkpoint before stays.
     pub fn write_checkpoint(&self, clock: Clock, state: &[u8]) -> Result<(), OutputError> {
         self.subfolder("checkpoint")?;
+        // It counts their rows.
+        self.gauges.sync()?;
         let progress = Progress {
             version: env!("CARGO_PKG_VERSION").into(),
             scene_sha256: checksum(&[self.scene_text.as_bytes()]),
