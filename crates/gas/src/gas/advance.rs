@@ -2,6 +2,7 @@
 
 use super::{Due, Gas};
 use crate::method::{Mover, Pause};
+use crate::world::Ball;
 use corpuscle_model::{CompensatedSum, ModelError};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -71,7 +72,7 @@ impl<const D: usize> Gas<D> {
         loop {
             let until = self.mover.world().in_window(time);
             match self.mover.run(until, AT_A_TIME) {
-                Pause::Reached => return Ok(true),
+                Pause::Reached => return self.check_balls().map(|()| true),
                 Pause::Worked => {}
                 Pause::WindowFull => {
                     let (past, left) = (self.mover.world().now, until - self.mover.world().now);
@@ -80,6 +81,7 @@ impl<const D: usize> Gas<D> {
                     self.check_pace(past, left)?;
                 }
                 Pause::Standstill => {
+                    self.check_balls()?;
                     return Err(self.broken(
                         "collisions follow each other without anything moving: balls are squeezed between walls or jammed, \
                          or have come to rest on each other. Give them more room, stop the wall that closes in, or (with a \
@@ -93,12 +95,34 @@ impl<const D: usize> Gas<D> {
         }
     }
 
+    /// Positions and velocities are finite.
+    fn check_balls(&self) -> Result<(), ModelError> {
+        let world = self.mover.world();
+        if let Some(ball) = world.refused {
+            let which = self.ball_in_words(ball);
+            return Err(self.broken(&format!("the velocity of {which} after a collision would no longer be a number")));
+        }
+        let broken = |ball: &Ball<D>| {
+            let named = [("position", &ball.position), ("velocity", &ball.velocity)];
+            named.into_iter().find(|(_, vector)| !vector.iter().all(|along| along.is_finite())).map(|(name, _)| name)
+        };
+        let found = world.balls.iter().enumerate().find_map(|(number, ball)| Some((number, broken(ball)?)));
+        let Some((number, quantity)) = found else { return Ok(()) };
+        Err(self.broken(&format!("the {quantity} of {} is no longer a number", self.ball_in_words(number))))
+    }
+
+    /// A ball and its position, in words.
+    fn ball_in_words(&self, ball: usize) -> String {
+        let world = self.mover.world();
+        let record = &world.records[ball];
+        let set = self.sets.get(record.species as usize).map_or("", |set| set.name.as_str());
+        format!("ball {} of `{set}` at {:.6?}", record.id, world.balls[ball].position)
+    }
+
     /// Numbers are numbers, and the box can hold its balls.
     fn check(&mut self) -> Result<(), ModelError> {
+        self.check_balls()?;
         let world = self.mover.world();
-        if !world.balls.iter().all(|ball| ball.position.iter().chain(&ball.velocity).all(|x| x.is_finite())) {
-            return Err(self.broken("a ball's place or velocity is no longer a number"));
-        }
         for axis in 0..D {
             let [low, high] = world.extent(axis, world.now);
             if high <= low {
@@ -219,5 +243,70 @@ impl<const D: usize> Gas<D> {
             }
         }
         self.mover.begin_window();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Amount, Gas, Method, Setup, Species};
+    use corpuscle_model::Model;
+    use std::sync::atomic::AtomicBool;
+
+    const METHODS: [Method; 3] = [Method::EventDriven, Method::List, Method::FixedStep(0.001)];
+
+    /// Amid a run.
+    fn balls(method: Method) -> Gas<3> {
+        let light = Species { radius: 0.4, ..Species::new("light", Amount::Count(20)) };
+        let mut setup = Setup::<3>::new([8.0; 3]).species(light).seed(3);
+        setup.method = method;
+        let mut gas = setup.build().unwrap();
+        advance(&mut gas, 0.5).unwrap();
+        gas
+    }
+
+    fn advance(gas: &mut Gas<3>, time: f64) -> Result<(), corpuscle_model::ModelError> {
+        gas.advance_to(time, &AtomicBool::new(false))
+    }
+
+    #[test]
+    fn a_ball_that_is_no_longer_anywhere_ends_the_run_with_its_time_and_position() {
+        for method in METHODS {
+            for quantity in ["position", "velocity"] {
+                let mut gas = balls(method);
+                let ball = &mut gas.mover.world_mut().balls[4];
+                let vector = if quantity == "position" { &mut ball.position } else { &mut ball.velocity };
+                vector[1] = f64::NAN;
+                let told = advance(&mut gas, 0.501).expect_err(quantity).to_string();
+                for word in ["broke down at t = 0.", "ball ", "of `light` at ["] {
+                    assert!(told.contains(word), "{method:?}, {quantity}, {word}: {told}");
+                }
+                assert!(told.contains(quantity) || told.contains("velocity"), "{told}");
+            }
+        }
+    }
+
+    /// By a mass or the temperature of a wall: what the event would have set is shown nowhere.
+    #[test]
+    fn an_event_that_gives_no_velocity_does_not_happen_and_ends_the_run() {
+        let breaks: [(&str, fn(&mut Gas<3>)); 2] = [
+            ("mass", |gas| gas.mover.world_mut().kinds.iter_mut().for_each(|kind| kind.mass = f64::NAN)),
+            ("wall", |gas| {
+                gas.mover.world_mut().walls.iter_mut().for_each(|wall| wall.temperature = Some(f64::NAN));
+            }),
+        ];
+        for method in METHODS {
+            for (what, break_it) in breaks {
+                let mut gas = balls(method);
+                break_it(&mut gas);
+                let told = advance(&mut gas, 100.0).expect_err(what).to_string();
+                let is_told = told.contains("ball ") && told.contains("of `light` at [") && !told.contains("NaN");
+                assert!(is_told, "{method:?}, {what}: {told}");
+                let frame = gas.frame();
+                for set in &frame.sets {
+                    let mut all = set.position.iter().chain(&set.velocity).flatten();
+                    assert!(all.all(|along| along.is_finite()), "{method:?}, {what}");
+                }
+            }
+        }
     }
 }

@@ -98,10 +98,11 @@ impl<const D: usize> FixedStep<D> {
         let world = &mut self.world;
         let (axis, place, radius) = (world.walls[wall].axis, world.walls[wall].place_at(world.now), world.radius(ball));
         let x = &mut world.balls[ball].position[axis];
+        // Not by the larger of both: a position that is not a number must not become the wall's.
         match world.walls[wall].facing {
-            Facing::Up => *x = x.max(place + radius),
-            Facing::Down => *x = x.min(place - radius),
-            Facing::Both => {}
+            Facing::Up if *x < place + radius => *x = place + radius,
+            Facing::Down if *x > place - radius => *x = place - radius,
+            _ => {}
         }
     }
 

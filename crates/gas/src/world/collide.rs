@@ -53,6 +53,9 @@ impl<const D: usize> World<D> {
             approach -= (kind_a.radius + kind_b.radius) * self.field.growth * apart2.sqrt();
         }
         let impulse = elasticity * reduced * approach / apart2;
+        if !impulse.is_finite() {
+            return self.refuse(a);
+        }
         if let Some(moments) = &mut self.moments {
             let velocity = &self.balls[a].velocity;
             let mut gain = 0.0;
@@ -93,6 +96,12 @@ impl<const D: usize> World<D> {
         1.0 + e
     }
 
+    /// An event of a ball does not happen, and ends the run.
+    #[cold]
+    pub fn refuse(&mut self, ball: usize) {
+        self.refused = Some(ball);
+    }
+
     /// Counts collisions in a row between which nothing moved: path times distance against distance squared.
     #[inline(always)]
     pub fn watch(&mut self, path: f64, apart2: f64) {
@@ -105,11 +114,11 @@ impl<const D: usize> World<D> {
 const STANDSTILL: [u32; 2] = [20, 10_000];
 
 impl<const D: usize> World<D> {
-    /// True where collisions follow each other without anything moving.
+    /// True where collisions follow each other without anything moving, or an event was refused.
     #[inline(always)]
     pub fn stands_still(&self) -> bool {
         let unguarded = self.rebound.restitution < 1.0 && self.rebound.contact_time == 0.0;
-        self.standstill > STANDSTILL[usize::from(!unguarded)]
+        self.standstill > STANDSTILL[usize::from(!unguarded)] || self.refused.is_some()
     }
 }
 

@@ -46,18 +46,23 @@ impl<const D: usize> World<D> {
             };
             push += away * radius * self.field.growth;
         }
-        let mut after = before;
+        let (mut after, mut speed_of_wall) = (before, None);
         if let Some(temperature) = self.walls[wall].temperature {
             after = self.reemit(wall, push, (temperature / mass).sqrt());
         } else if let Some(heavy) = self.walls[wall].mass {
             // By energy and momentum on the line of centres, with the wall as the other ball.
             let total = mass + heavy;
             after[axis] = ((mass - heavy) * before[axis] + 2.0 * heavy * push) / total;
-            let speed = ((heavy - mass) * push + 2.0 * mass * before[axis]) / total;
-            let now = self.now;
-            self.walls[wall].bend(now, speed);
+            speed_of_wall = Some(((heavy - mass) * push + 2.0 * mass * before[axis]) / total);
         } else {
             after[axis] = 2.0 * push - before[axis];
+        }
+        if !after.iter().all(|along| along.is_finite()) {
+            return self.refuse(ball);
+        }
+        if let Some(speed) = speed_of_wall {
+            let now = self.now;
+            self.walls[wall].bend(now, speed);
         }
         self.balls[ball].velocity = after;
         self.book_hit(wall, mass, &before, &after);

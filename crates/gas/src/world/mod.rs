@@ -59,6 +59,8 @@ pub(crate) struct World<const D: usize> {
     pub wall_tallies: Vec<WallTally>,
     /// Collisions in a row between which nothing moved.
     pub standstill: u32,
+    /// A ball to which an event would have given a velocity that is not finite; the event did not happen.
+    pub refused: Option<usize>,
     /// For thermal walls.
     pub random: ChaCha8Rng,
     /// What momentum and energy have moved; none where walls, loss or gravity change them.
@@ -120,6 +122,7 @@ impl<const D: usize> World<D> {
             tally: Tally::default(),
             wall_tallies: Vec::new(),
             standstill: 0,
+            refused: None,
             random: rand::SeedableRng::seed_from_u64(0),
             moments: None,
             regions: Vec::new(),

@@ -208,7 +208,11 @@ impl<const D: usize> World<D> {
         let squared = approach * approach + 2.0 * gain * apart2 / reduced;
         let passes = squared > 0.0;
         let after = if passes { outward * squared.sqrt() } else { -outward * approach.abs() };
-        self.push_apart(a, b, &apart, reduced * (approach - after) / apart2);
+        let impulse = reduced * (approach - after) / apart2;
+        if !impulse.is_finite() {
+            return self.refuse(a);
+        }
+        self.push_apart(a, b, &apart, impulse);
         if let Some(well) = &mut self.well {
             let tally = &mut well.tally;
             match (inside, passes) {
