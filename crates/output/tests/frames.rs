@@ -278,6 +278,9 @@ fn zeros(points: usize) -> String {
         [("set", 1, 4), ("id", 1, 8), ("velocity", 3, 24), ("radius", 1, 8), ("mass", 1, 8), ("position", 3, 24)]
     {
         let offset = appended.len();
+        if name == "position" {
+            elements += "</PointData><Points>";
+        }
         elements += &format!("<DataArray Name=\"{name}\" NumberOfComponents=\"{components}\" offset=\"{offset}\"/>");
         let mut packed = Vec::new();
         let bytes = vec![0; points * size];
@@ -288,7 +291,7 @@ fn zeros(points: usize) -> String {
     }
     format!(
         "<VTKFile><FieldData><DataArray Name=\"TimeValue\">0</DataArray><Array Name=\"set_names\">97 0</Array></FieldData>\
-         <Piece NumberOfPoints=\"{points}\"><PointData>{elements}</PointData></Piece><AppendedData>_{appended}</AppendedData>\
+         <Piece NumberOfPoints=\"{points}\"><PointData>{elements}</Points></Piece><AppendedData>_{appended}</AppendedData>\
          </VTKFile>"
     )
 }
