@@ -86,8 +86,8 @@ impl Terrain {
     /// corner. A polygon without area has the height at the mean of its corners. A coordinate that is not a number is
     /// taken for the south-west corner's of the bounds; a polygon without corners is the middle of the bounds.
     ///
-    /// For polygons that hold runs of more than four whole patches in a row of the grid, the sums of that row's patches
-    /// are kept from then on: 8 bytes a patch, for all rows together a quarter of the memory of the ground itself.
+    /// The surface is kept in blocks of 64 x 64 patches from the first look on, 33 bytes a patch; for polygons that hold
+    /// runs of more than four whole patches in a row of the grid, sums of a block's patches too, 8 bytes a patch.
     pub fn mean_over(&self, polygon: &[[f64; 2]]) -> f64 {
         self.mean_over_outline(self.outline(polygon))
     }

@@ -22,7 +22,7 @@ use flate2::read::GzDecoder;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
-/// A raster may have this many cells: 10,000 x 10,000. Beyond, the smooth surface alone takes more than 3 GB.
+/// A raster may have this many cells: 10,000 x 10,000. Beyond, the smooth surface alone takes more than 3 GB where all of it is looked at.
 pub(crate) const MOST_CELLS: u64 = 100_000_000;
 
 /// The most text that is unpacked from a compressed grid: 20 characters for each of the cells a raster may have.
