@@ -235,19 +235,16 @@ impl Terrain {
         Arc::clone(&self.map_grid.frame)
     }
 
-    /// A height, m, below which there is no ground in the rectangle round some positions `[x, y]`, m, found by the heights
-    /// alone, without the surface through them. Of ground from a formula, of no positions and round a position that is not
-    /// a number that is -infinity.
-    pub fn lowest_around(&self, positions: impl Iterator<Item = [f64; 2]>) -> f64 {
+    /// A height, m, below which there is no ground in the rectangle between two corners `[x, y]`, m, found by the heights
+    /// alone, without the surface through them. Of ground from a formula, of a rectangle that holds more than `most` heights
+    /// and of one with a corner that is not a number that is -infinity.
+    pub fn lowest_within(&self, [from, to]: [[f64; 2]; 2], most: usize) -> f64 {
         let Ground::Surface(surface) = &self.ground else { return f64::NEG_INFINITY };
-        let none = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        let mut numbers = true;
-        let [from, to] = positions.fold(none, |[from, to], position| {
-            numbers &= position.iter().all(|coordinate| !coordinate.is_nan());
-            let [x, y] = self.bounds.nearest(position[0], position[1]);
-            [[from[0].min(x), from[1].min(y)], [to[0].max(x), to[1].max(y)]]
-        });
-        if numbers && from[0] <= to[0] { surface.lowest_in(from, to) } else { f64::NEG_INFINITY }
+        if from.iter().chain(&to).any(|coordinate| coordinate.is_nan()) {
+            return f64::NEG_INFINITY;
+        }
+        let [from, to] = [from, to].map(|[x, y]| self.bounds.nearest(x, y));
+        surface.lowest_in(from, to, most).unwrap_or(f64::NEG_INFINITY)
     }
 
     /// Lowest and highest ground at the centres of the cells of the map grid that have data, m; infinite, the lowest

@@ -32,6 +32,9 @@ use std::sync::Arc;
 /// More cells than this do not fit in the memory of usual machines.
 const MOST_CELLS: f64 = 1e8;
 
+/// Most heights of the terrain that are looked at to tell whether a tile is dry: about as many as it has positions.
+const HEIGHTS_A_TILE: usize = 2048;
+
 /// The depth whose wave speed sets the time step where there is no water yet, m.
 const DRY_DEPTH: f64 = 0.05;
 
@@ -395,7 +398,7 @@ impl VoronoiFlood {
             |at: [f64; 2], ground: f64| bodies.iter().any(|body| body.may_be_at(at, ground, layout.spacing()));
         let wet = |tile: &usize| {
             // Most tiles of a large terrain are dry by its heights alone.
-            let lowest = self.terrain.lowest_around(layout.positions(*tile));
+            let lowest = self.terrain.lowest_within(layout.rectangle(*tile), HEIGHTS_A_TILE);
             layout.positions(*tile).any(|at| may_be_at(at, lowest))
                 && layout.positions(*tile).any(|at| may_be_at(at, self.terrain.height(at[0], at[1])))
         };

@@ -174,16 +174,21 @@ impl Surface {
         self.heights.at(column, row)
     }
 
-    /// A height below which the surface nowhere is in a rectangle, m: that of its lowest node there, less rounding.
-    pub(crate) fn lowest_in(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
+    /// A height below which the surface nowhere is in a rectangle, m: that of its lowest node there, less rounding; none
+    /// where there are more than `most` nodes.
+    pub(crate) fn lowest_in(&self, from: [f64; 2], to: [f64; 2], most: usize) -> Option<f64> {
         let [first, last] = [from, to].map(|[x, y]| self.patch_at(x, y).0);
+        let nodes = [0, 1].map(|axis| (last[axis] + 2).saturating_sub(first[axis]));
+        if nodes[0] * nodes[1] > most {
+            return None;
+        }
         let mut lowest = f64::INFINITY;
         for row in first[1]..=last[1] + 1 {
             for column in first[0]..=last[0] + 1 {
                 lowest = lowest.min(self.heights.with_ring([column, row]));
             }
         }
-        lowest - ROUNDING * lowest.abs().max(1.0)
+        Some(lowest - ROUNDING * lowest.abs().max(1.0))
     }
 
     /// Column and row of the patch that holds a place, and where in it.
@@ -428,7 +433,9 @@ mod tests {
             let surface = Surface::new(heights, [6, 6], [0.0, 0.0], [1.0, 1.0]);
             let at = |part: [f64; 2]| [0, 1].map(|axis| from[axis] + part[axis] * size[axis]);
             let [x, y] = at(part);
-            prop_assert!(surface.height_and_slope(x, y).0 >= surface.lowest_in(at([0.0; 2]), at([1.0; 2])));
+            let [from, to] = [at([0.0; 2]), at([1.0; 2])];
+            prop_assert!(surface.height_and_slope(x, y).0 >= surface.lowest_in(from, to, 36).unwrap_or(f64::NEG_INFINITY));
+            prop_assert!(surface.lowest_in(from, to, 49).is_some() && surface.lowest_in(from, to, 3).is_none());
         }
 
         /// Between four nodes the surface stays between the lowest and the highest of them, whatever the heights.

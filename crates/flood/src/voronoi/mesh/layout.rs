@@ -266,6 +266,12 @@ impl Layout {
         self.pattern.at.iter().map(move |within| [0, 1].map(|axis| corner[axis] + within[axis]))
     }
 
+    /// South-west and north-east corner of a tile, m.
+    pub fn rectangle(&self, tile: usize) -> [[f64; 2]; 2] {
+        let corner = self.corner(tile);
+        [corner, [0, 1].map(|axis| corner[axis] + self.tile[axis])]
+    }
+
     /// About how many points a tile has, without making them.
     pub fn about(&self, tile: usize) -> f64 {
         let count = self.pattern.at.len() as f64;
