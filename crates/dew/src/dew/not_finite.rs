@@ -246,6 +246,9 @@ mod tests {
     use corpuscle_scene::Scene;
     use std::path::Path;
 
+    /// A change that makes a value no number.
+    type Break = fn(&mut Dew);
+
     const GLASS: &str = "run.until_s = 0.01\n[dew]\nsize_m = [0.02, 0.02, 0.02]\nspacing_m = 0.005\n\
         air = { temperature_c = 25.0, relative_humidity = 0.9 }\ndrops = { sites_per_m2 = 1e6 }\n\
         solid = [{ name = \"pane\", shape = { box = { size_m = [0.005, 0.02, 0.02] } }, position_m = [0.0025, 0.01, 0.01], temperature_c = 5.0 }]\n";
@@ -277,7 +280,7 @@ mod tests {
 
     #[test]
     fn a_value_that_is_not_a_number_ends_the_run_with_its_time_and_position() {
-        let breaks: [(&str, fn(&mut Dew)); 7] = [
+        let breaks: [(&str, Break); 7] = [
             ("position", |dew| dew.state.air[3].position[1] = f64::NAN),
             ("velocity", |dew| dew.state.air[3].velocity[0] = f64::NAN),
             ("temperature", |dew| dew.state.air[3].temperature = f64::NAN),
@@ -298,7 +301,7 @@ mod tests {
 
     #[test]
     fn a_step_that_breaks_down_is_taken_back() {
-        let breaks: [(&str, fn(&mut Dew)); 5] = [
+        let breaks: [(&str, Break); 5] = [
             ("drive", |dew| dew.settings.body_acceleration = [f64::NAN; 3]),
             ("heat of condensation", |dew| dew.latent_heat = f64::NAN),
             ("conduction", |dew| dew.conductances[5] = f64::NAN),

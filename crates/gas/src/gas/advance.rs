@@ -288,7 +288,8 @@ mod tests {
     /// By a mass or the temperature of a wall: what the event would have set is shown nowhere.
     #[test]
     fn an_event_that_gives_no_velocity_does_not_happen_and_ends_the_run() {
-        let breaks: [(&str, fn(&mut Gas<3>)); 2] = [
+        type Break = fn(&mut Gas<3>);
+        let breaks: [(&str, Break); 2] = [
             ("mass", |gas| gas.mover.world_mut().kinds.iter_mut().for_each(|kind| kind.mass = f64::NAN)),
             ("wall", |gas| {
                 gas.mover.world_mut().walls.iter_mut().for_each(|wall| wall.temperature = Some(f64::NAN));
