@@ -445,15 +445,18 @@ onPage("a page within another has no panels", "?embed#gas/maxwell", async (stage
   await stage.shot("embedded");
 }, { width: 640, height: 480 });
 
+// Runs in the page: keeps the device that the page is given, so that a test can take it away.
+function keepDevice() {
+  const request = GPUAdapter.prototype.requestDevice;
+  GPUAdapter.prototype.requestDevice = async function (...described) {
+    window.device = await request.apply(this, described);
+    return window.device;
+  };
+}
+
 test("the page survives a lost device", { timeout: 120_000 }, async () => {
   const stage = await Stage.open(browser, "about:blank");
-  await stage.page.addInitScript(() => {
-    const request = GPUAdapter.prototype.requestDevice;
-    GPUAdapter.prototype.requestDevice = async function (...described) {
-      window.device = await request.apply(this, described);
-      return window.device;
-    };
-  });
+  await stage.page.addInitScript(keepDevice);
   await stage.page.goto(`${address}/app/#gas/maxwell?gas.species.0.count=500`);
   await stage.until("it plays", (state) => state.time > 0);
   const before = await stage.page.evaluate(() => {
@@ -468,12 +471,8 @@ test("the page survives a lost device", { timeout: 120_000 }, async () => {
 
 test("a device that is lost twice gives way to WebGL", { timeout: 180_000 }, async () => {
   const stage = await Stage.open(browser, "about:blank");
+  await stage.page.addInitScript(keepDevice);
   await stage.page.addInitScript(() => {
-    const request = GPUAdapter.prototype.requestDevice;
-    GPUAdapter.prototype.requestDevice = async function (...described) {
-      window.device = await request.apply(this, described);
-      return window.device;
-    };
     // The second loss follows soon after the first, however slow this machine is.
     Date.now = () => 1e12;
   });
