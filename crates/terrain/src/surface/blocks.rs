@@ -73,9 +73,9 @@ impl Heights {
 
     /// The nodes of the grid with one ring of nodes round it, `count` columns and rows from `first` on, row by row.
     pub fn nodes(&self, first: [usize; 2], count: [usize; 2]) -> Vec<Node> {
-        // Twists need the slopes of the nodes round them, and slopes the heights.
-        let low = first.map(|index| index.saturating_sub(2));
-        let high = [0, 1].map(|axis| (first[axis] + count[axis] + 2).min(self.size[axis] + 2));
+        // Slopes and twists follow from the heights of the nodes round them: twists from the slopes across.
+        let low = first.map(|index| index.saturating_sub(1));
+        let high = [0, 1].map(|axis| (first[axis] + count[axis] + 1).min(self.size[axis] + 2));
         let (width, rows) = (high[0] - low[0], high[1] - low[1]);
         let mut heights = Vec::with_capacity(width * rows);
         for row in low[1]..high[1] {
