@@ -2,8 +2,14 @@
 
 use crate::random::Random;
 
-/// Longest input that is made, bytes.
+/// Longest input that is made, bytes, but for a few.
 const LONGEST: usize = 1 << 16;
+
+/// Longest of the few large inputs, bytes.
+const LARGE: usize = 2 << 20;
+
+/// Part of all inputs that are large.
+const LARGE_PART: f64 = 0.004;
 
 /// Numbers as text at which readers may fail.
 const NUMBERS: [&str; 34] = [
@@ -121,7 +127,13 @@ impl Mutator {
                 (false, false) => self.change_fields(&mut input, random),
             }
         }
-        input.truncate(LONGEST.max(4 * self.pool[0].len()));
+        let longest = LONGEST.max(4 * self.pool[0].len());
+        if random.chance(LARGE_PART) {
+            enlarge(&mut input, random);
+            input.truncate(LARGE.max(longest));
+        } else {
+            input.truncate(longest);
+        }
         input
     }
 
@@ -232,6 +244,22 @@ fn repeat(input: &mut Vec<u8>, at: usize, random: &mut Random) {
     input.splice(at..at, piece.repeat(times));
 }
 
+/// Repeats a piece of an input, often whole lines, until it has up to [`LARGE`] bytes.
+fn enlarge(input: &mut Vec<u8>, random: &mut Random) {
+    let lines = lines_of(input);
+    let (from, to) = if random.chance(0.5) {
+        *random.one_of(&lines)
+    } else {
+        let from = random.below(input.len());
+        (from, (from + 1 + random.below(256)).min(input.len()))
+    };
+    let piece = input.get(from..to).unwrap_or_default().to_vec();
+    if !piece.is_empty() {
+        let times = 1 + random.below(LARGE) / piece.len();
+        input.splice(from..from, piece.repeat(times));
+    }
+}
+
 fn replace(input: &mut Vec<u8>, spans: &[(usize, usize)], by: &[u8], random: &mut Random) {
     if !spans.is_empty() {
         let (from, to) = *random.one_of(spans);
@@ -308,6 +336,15 @@ mod tests {
         assert_eq!(made(1), made(1));
         assert_ne!(made(1), made(2));
         assert!(made(1).iter().filter(|input| !seeds.contains(input)).count() > 240);
+    }
+
+    #[test]
+    fn some_inputs_are_large() {
+        let mutator = Mutator::new(vec![b"1 2 3\n4 5 6\n".to_vec()]);
+        let mut random = Random::new(3);
+        let sizes: Vec<usize> = (0..5000).map(|_| mutator.next(&mut random).len()).collect();
+        let large = sizes.iter().filter(|size| **size > 4 * LONGEST).count();
+        assert!(large >= 2 && large < 100 && sizes.iter().all(|size| *size <= LARGE), "{large}");
     }
 
     #[test]

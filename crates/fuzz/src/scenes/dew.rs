@@ -7,20 +7,18 @@ use corpuscle_scene::dew::{
     Output, Outside, Radiation, Scheme, Shape, Side, Solid, SolidFace, Transport, Treatment, WallLayer,
 };
 
-/// Distance between particles, m.
-const SPACING: f64 = 0.005;
-
 /// Humid air of some hundred particles, with one or two solids.
 pub(super) fn scene(maker: &mut Maker<'_>) -> String {
     let until = 1.0;
-    let size: [f64; 3] = std::array::from_fn(|_| SPACING * (6 + maker.random.below(4)) as f64);
+    let spacing = maker.one_of(&[0.003, 0.005, 0.008]);
+    let size: [f64; 3] = std::array::from_fn(|_| spacing * (6 + maker.random.below(4)) as f64);
     let scheme = if maker.has(0.3) { Scheme::Paper } else { Scheme::Physical };
     let faces = faces(maker);
     let all = [&faces.x_min, &faces.x_max, &faces.y_min, &faces.y_max, &faces.z_min, &faces.z_max];
     let leaves = all.iter().any(|face| matches!(face, Face::Outflow | Face::Open));
     let dew = Dew {
         size_m: size,
-        spacing_m: SPACING,
+        spacing_m: spacing,
         scheme,
         kernel: maker.one_of(&[KernelName::Mueller, KernelName::CubicSpline, KernelName::WendlandC2]),
         gravity_m_per_s2: [0.0, 0.0, if maker.has(0.1) { 0.0 } else { -9.81 }],
@@ -34,9 +32,15 @@ pub(super) fn scene(maker: &mut Maker<'_>) -> String {
         }),
         boundary: Boundary {
             // The treatment `virtual-force` may break down: see the page on limits.
-            treatment: maker.one_of(&[Treatment::DensityCorrection, Treatment::DensityCorrection, Treatment::Ghost]),
+            treatment: maker.one_of(&[
+                Treatment::DensityCorrection,
+                Treatment::DensityCorrection,
+                Treatment::Ghost,
+                Treatment::VirtualForce,
+                Treatment::None,
+            ]),
             colour_threshold: 0.15,
-            kappa: 1.0,
+            kappa: maker.maybe(0.3, |maker| maker.between(0.8, 1.2)).unwrap_or(1.0),
         },
         transport: transport(maker, scheme),
         drops: drops(maker),
@@ -44,11 +48,14 @@ pub(super) fn scene(maker: &mut Maker<'_>) -> String {
             .maybe(0.2, |maker| LowUtility { distance: maker.between(1.0, 6.0), after_s: maker.between(0.01, 1.0) })
             .filter(|_| leaves),
         output: Output { air: !maker.has(0.2), solids: !maker.has(0.2) },
-        solid: solids(maker, size, &all, until),
+        solid: solids(maker, size, spacing, &all, until),
         faces: faces.clone(),
     };
-    super::text(maker.random.bits(), until, &[("dew", &dew)])
+    super::text(maker, until, &[("dew", &dew)])
 }
+
+/// The sides of a box, those of an axis beside each other.
+const SIDES: [Side; 6] = [Side::XMin, Side::XMax, Side::YMin, Side::YMax, Side::ZMin, Side::ZMax];
 
 fn air(maker: &mut Maker<'_>) -> Air {
     let celsius = maker.between(-20.0, 60.0);
@@ -71,12 +78,14 @@ fn faces(maker: &mut Maker<'_>) -> Faces {
         let is_periodic = maker.has(0.15);
         let mut side = |inwards: f64| {
             let speed = maker.between(0.02, 0.3);
+            let (by, relative, below) = (maker.random.below(4), maker.between(0.0, 0.5), maker.between(0.0, 20.0));
+            let ratio = maker.between(0.0, 0.002);
             let inflow = AirInflow {
                 velocity_m_per_s: std::array::from_fn(|k| if k == axis { inwards * speed } else { 0.0 }),
                 temperature_c: maker.maybe(0.5, |maker| maker.between(0.0, 40.0)),
-                relative_humidity: maker.maybe(0.5, |maker| maker.between(0.0, 0.5)),
-                dew_point_c: None,
-                mixing_ratio: None,
+                relative_humidity: (by == 1).then_some(relative),
+                dew_point_c: (by == 2).then_some(-below),
+                mixing_ratio: (by == 3).then_some(ratio),
             };
             let kind = maker.random.below(4);
             let is_other = maker.has(0.25);
@@ -116,11 +125,15 @@ fn transport(maker: &mut Maker<'_>, scheme: Scheme) -> Transport {
 }
 
 fn drops(maker: &mut Maker<'_>) -> Drops {
+    let contact = maker.between(10.0, 120.0);
+    let friction = maker.maybe(0.2, |maker| maker.between(1e-5, 1e-3));
+    let angles = maker.maybe(0.3, |maker| [maker.between(0.3, 1.0), maker.between(1.0, 1.4)]);
+    let angles = angles.filter(|_| friction.is_none());
     Drops {
-        contact_angle_deg: maker.between(10.0, 120.0),
-        receding_angle_deg: None,
-        advancing_angle_deg: None,
-        friction: maker.maybe(0.2, |maker| maker.between(1e-5, 1e-3)),
+        contact_angle_deg: contact,
+        receding_angle_deg: angles.map(|[part, _]| part * contact),
+        advancing_angle_deg: angles.map(|[_, part]| part * contact),
+        friction,
         viscosity_pa_s: maker.maybe(0.2, |maker| maker.between(1e-4, 1e-2)).unwrap_or(1.0016e-3),
         surface_tension_n_per_m: maker.maybe(0.2, |maker| maker.between(0.02, 0.1)).unwrap_or(0.0728),
         smallest_radius_m: maker.maybe(0.3, |maker| maker.between(1e-5, 1e-4)),
@@ -129,15 +142,15 @@ fn drops(maker: &mut Maker<'_>) -> Drops {
     }
 }
 
-fn solids(maker: &mut Maker<'_>, size: [f64; 3], faces: &[&Face; 6], until: f64) -> Vec<Solid> {
+fn solids(maker: &mut Maker<'_>, size: [f64; 3], spacing: f64, faces: &[&Face; 6], until: f64) -> Vec<Solid> {
     let shape = |maker: &mut Maker<'_>| {
         let (a, b) = (maker.between(1.0, 1.6), maker.between(1.0, 2.0));
         match maker.random.below(4) {
-            0 => Shape::Box { size_m: [2.0 * a * SPACING, 2.0 * b * SPACING, 2.0 * a * SPACING] },
-            1 => Shape::Sphere { radius_m: a * SPACING },
-            2 => Shape::Cylinder { radius_m: a * SPACING, height_m: 2.0 * b * SPACING },
+            0 => Shape::Box { size_m: [2.0 * a * spacing, 2.0 * b * spacing, 2.0 * a * spacing] },
+            1 => Shape::Sphere { radius_m: a * spacing },
+            2 => Shape::Cylinder { radius_m: a * spacing, height_m: 2.0 * b * spacing },
             _ => Shape::Revolution {
-                profile_m: vec![[0.0, 0.0], [a * SPACING, 0.0], [a * SPACING, b * SPACING], [0.0, b * SPACING]],
+                profile_m: vec![[0.0, 0.0], [a * spacing, 0.0], [a * spacing, b * spacing], [0.0, b * spacing]],
             },
         }
     };
@@ -187,16 +200,20 @@ fn solids(maker: &mut Maker<'_>, size: [f64; 3], faces: &[&Face; 6], until: f64)
     };
     let mut solids = Vec::new();
     let floor = maker.has(0.5);
-    let outside = outside(maker, until);
-    let mut pane = whole(
-        maker,
-        "pane",
-        Shape::Box { size_m: [size[0], size[1], SPACING] },
-        [0.5 * size[0], 0.5 * size[1], 0.5 * SPACING],
-        Some(outside),
-    );
-    pane.face = maker.list(0.5, 1, |_, _| SolidFace { name: "upper".into(), side: Side::ZMax });
-    if floor && *faces[4] == Face::Wall {
+    let number = if maker.has(0.5) { 4 } else { maker.random.below(6) };
+    let (axis, is_high) = (number / 2, number % 2 == 1);
+    let outside = Outside { side: SIDES[number], ..outside(maker, until) };
+    let of_pane = |along: usize| if along == axis { spacing } else { size[along] };
+    let middle = |along: usize| match along == axis {
+        true if is_high => size[along] - 0.5 * spacing,
+        true => 0.5 * spacing,
+        false => 0.5 * size[along],
+    };
+    let shape_of_pane = Shape::Box { size_m: std::array::from_fn(of_pane) };
+    let mut pane = whole(maker, "pane", shape_of_pane, std::array::from_fn(middle), Some(outside));
+    // The side that faces the air.
+    pane.face = maker.list(0.5, 1, |_, _| SolidFace { name: "inner".into(), side: SIDES[number ^ 1] });
+    if floor && *faces[number] == Face::Wall {
         solids.push(pane);
     }
     let other = maker.has(0.7);

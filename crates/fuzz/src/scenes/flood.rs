@@ -36,7 +36,7 @@ pub(super) fn scene(maker: &mut Maker<'_>, is_sph_swe: bool) -> String {
             ..flood
         };
     }
-    super::text(maker.random.bits(), until, &[("terrain", &terrain), ("flood", &flood)])
+    super::text(maker, until, &[("terrain", &terrain), ("flood", &flood)])
 }
 
 /// Closed on all sides, without anything that comes in; half of them at rest.
@@ -61,7 +61,7 @@ pub(super) fn lake(maker: &mut Maker<'_>) -> String {
         link: Vec::new(),
         ..made
     };
-    super::text(maker.random.bits(), until, &[("terrain", &terrain), ("flood", &flood)])
+    super::text(maker, until, &[("terrain", &terrain), ("flood", &flood)])
 }
 
 fn terrain(maker: &mut Maker<'_>) -> Terrain {
@@ -114,7 +114,7 @@ fn flood(maker: &mut Maker<'_>, until: f64) -> Flood {
     let obstacle = maker.list(0.3, 3, obstacle);
     Flood {
         scheme: Scheme::Voronoi,
-        units: FloodUnits::Si,
+        units: if maker.has(0.1) { FloodUnits::Us } else { FloodUnits::Si },
         spacing_m: Some(spacing),
         spacing_depth_m: maker.maybe(0.3, |maker| maker.between(0.3, 3.0)),
         gravity_m_per_s2: maker.maybe(0.2, |maker| maker.between(0.1, 20.0)).unwrap_or(9.81),
@@ -219,6 +219,7 @@ fn finer(maker: &mut Maker<'_>, spacing: f64, has_obstacles: bool) -> Vec<Finer>
 fn sph_swe(maker: &mut Maker<'_>) -> SphSwe {
     SphSwe {
         time_step_s: 0.02,
+        // One that does not go with the distance of particles may end in absurd depths: open/sph-swe-smoothing-length.toml.
         smoothing_length_m: None,
         smoothing: if maker.has(0.3) { SmoothingForm::Rate } else { SmoothingForm::Density },
         kernel: maker.one_of(&[KernelName::Mueller, KernelName::CubicSpline, KernelName::WendlandC2]),
@@ -291,7 +292,11 @@ fn water(maker: &mut Maker<'_>, number: usize) -> Water {
         Expression::parse("1 + 0.5 * exp(-((x - 30)^2 + (y - 30)^2) / 50)").expect("the expression is valid");
     let polygon = maker.maybe(0.4, polygon);
     let velocity = [maker.between(-2.0, 2.0), maker.between(-2.0, 2.0)];
+    let whirl = ["-0.02 * (y - 30)", "0.02 * (x - 30)"]
+        .map(|text| Field::Expression(Expression::parse(text).expect("the expression is valid")));
+    let is_whirl = maker.has(0.2);
     let velocity = maker.maybe(0.4, |_| StartVelocity::from(velocity)).unwrap_or_default();
+    let velocity = if is_whirl { StartVelocity::Components(whirl) } else { velocity };
     let corner = [maker.between(5.0, 40.0), maker.between(5.0, 40.0)];
     let block = Block {
         from: corner,

@@ -31,9 +31,9 @@ pub(super) fn scene(maker: &mut Maker<'_>) -> String {
     let species: Vec<Species> = (0..3)
         .filter_map(|number| maker.maybe(if number == 0 { 1.0 } else { 0.5 }, |maker| species(maker, number, &size)))
         .collect();
-    let ball = maker.list(0.4, 1, |maker, number| Ball {
+    let ball = maker.list(0.4, 2, |maker, number| Ball {
         name: format!("ball {number}"),
-        position: size.iter().map(|length| length * 0.25).collect(),
+        position: size.iter().map(|length| length * (0.25 + 0.35 * number as f64)).collect(),
         velocity: maker.maybe(0.5, |maker| (0..3).map(|_| maker.between(-2.0, 2.0)).take(dimensions).collect()),
         radius: maker.between(0.2, 1.2),
         mass: maker.between(0.5, 100.0),
@@ -41,16 +41,17 @@ pub(super) fn scene(maker: &mut Maker<'_>) -> String {
     });
     let restitution = maker.maybe(0.3, |maker| maker.between(0.3, 1.0)).unwrap_or(1.0);
     let mut gas = Gas {
-        units: Units::Reduced,
+        units: if maker.has(0.2) { Units::Si } else { Units::Reduced },
         method: match maker.random.below(5) {
             0 => Method::List,
-            1 if maker.has(0.5) => Method::FixedStep { time_step_s: 0.01 },
+            1 if maker.has(0.5) => Method::FixedStep { time_step_s: maker.between(0.001, 0.05) },
             _ => Method::EventDriven,
         },
         restitution,
         contact_time_s: maker.maybe(0.2, |maker| maker.between(0.0, 0.01)),
         reversed_at_s: maker.maybe(0.2, |maker| maker.between(0.1, 5.0)),
-        follow: maker.maybe(0.5, |_| 0),
+        // Those given one by one have the first numbers, and there is a species.
+        follow: maker.maybe(0.5, |maker| maker.random.below(ball.len() + 1) as u64),
         measure: measure(maker, &size),
         start_file: None,
         well: maker.maybe(0.2, |maker| SquareWell { depth: maker.between(-1.0, 2.0), width: maker.between(1.1, 2.0) }),
@@ -66,7 +67,7 @@ pub(super) fn scene(maker: &mut Maker<'_>) -> String {
         species,
     };
     leave_out_what_does_not_go_together(&mut gas);
-    super::text(maker.random.bits(), until, &[("gas", &gas)])
+    super::text(maker, until, &[("gas", &gas)])
 }
 
 /// Leaves out what wells and shear refuse.

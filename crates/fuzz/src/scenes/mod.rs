@@ -107,8 +107,14 @@ pub fn scene(kind: Kind, seed: u64, off: &[usize]) -> (String, usize) {
 }
 
 /// Text of a scene with these tables.
-fn text(seed: u64, until_s: f64, tables: &[(&str, &dyn erased::Table)]) -> String {
-    let run = Run { until_s, frame_every_s: None, gauge_every_s: None, checkpoint_every_wall_s: 60.0 };
+fn text(maker: &mut Maker<'_>, until_s: f64, tables: &[(&str, &dyn erased::Table)]) -> String {
+    let run = Run {
+        until_s,
+        frame_every_s: maker.maybe(0.2, |maker| maker.between(0.001, 1.0) * until_s),
+        gauge_every_s: maker.maybe(0.2, |maker| maker.between(0.001, 1.0) * until_s),
+        checkpoint_every_wall_s: 60.0,
+    };
+    let seed = maker.random.bits();
     let mut whole = toml::Table::new();
     let value = |table: &dyn erased::Table| table.value();
     whole.insert("seed".into(), toml::Value::Integer((seed % 1_000_000) as i64));

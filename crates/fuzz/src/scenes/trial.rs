@@ -2,7 +2,7 @@
 
 use super::{Kind, scene};
 use corpuscle::Simulation;
-use corpuscle_model::{Frame, Model, ModelError, Values};
+use corpuscle_model::{Column, Frame, GaugeColumn, Model, ModelError, Values};
 use corpuscle_scene::{Method, Scene};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -102,7 +102,7 @@ fn run(kind: Kind, text: &str) -> Trial {
     expected.at_rest = fastest(&model.frame()) == 0.0;
     let start = Instant::now();
     let mut period = 1e-5 * until;
-    let mut after = None;
+    let (mut after, mut is_restored) = (None, false);
     while model.steps() < STEPS && model.time() < until && start.elapsed() < LONGEST {
         let time = (model.time() + period).min(until);
         if let Err(error) = advance(model, time, &stop) {
@@ -111,6 +111,12 @@ fn run(kind: Kind, text: &str) -> Trial {
         }
         if model.steps() < STEPS / 10 {
             period *= 2.0;
+        }
+        if !is_restored && model.steps() >= STEPS / 2 {
+            is_restored = true;
+            if let Err(trial) = restore(model) {
+                return trial;
+            }
         }
         if let Err(trial) = check(&expected, model) {
             return trial;
@@ -121,6 +127,14 @@ fn run(kind: Kind, text: &str) -> Trial {
         Some(error) => check(&expected, model).err().unwrap_or_else(|| Trial::Refused(error.to_string())),
         None => Trial::Sound(model.steps()),
     }
+}
+
+/// Takes a state back amid a run, which then is the same to the bit.
+fn restore(model: &mut dyn Model) -> Result<(), Trial> {
+    let at = format!("t = {} s, step {}", model.time(), model.steps());
+    let state = model.save();
+    model.restore(&state).map_err(|error| finding("own state is refused", format!("{at}: {error}")))?;
+    if model.save() == state { Ok(()) } else { Err(finding("another state when taken back", at)) }
 }
 
 /// Advances; told to return after a while, and noticed where it does not.
@@ -143,6 +157,9 @@ fn check(expected: &Expected, model: &dyn Model) -> Result<(), Trial> {
     let frame = model.frame();
     let at = format!("t = {} s, step {}", model.time(), model.steps());
     if let Some(what) = not_a_number(&frame) {
+        return Err(finding("not a number", format!("{at}: {what}")));
+    }
+    if let Some(what) = not_a_number_beside(expected.kind, model) {
         return Err(finding("not a number", format!("{at}: {what}")));
     }
     for mut balance in model.ledger().balances {
@@ -190,15 +207,52 @@ fn not_a_number(frame: &Frame) -> Option<String> {
             }
         }
         for column in &set.columns {
-            let bad = match &column.values {
-                Values::Scalar(values) => values.iter().position(|value| value.is_infinite()),
-                Values::Vector(vectors) => {
-                    vectors.iter().position(|vector| vector.iter().any(|value| value.is_infinite()))
-                }
-            };
-            if let Some(at) = bad {
-                return Some(format!("{} of {} {} is infinite", column.name, set.name, set.id[at]));
+            if let Some(at) = first_bad(column, f64::is_finite) {
+                return Some(format!("{} of {} {}", column.name, set.name, set.id[at]));
             }
+        }
+    }
+    None
+}
+
+/// The first entry of a column that is refused.
+fn first_bad(column: &Column, is_allowed: impl Fn(f64) -> bool) -> Option<usize> {
+    match &column.values {
+        Values::Scalar(values) => values.iter().position(|value| !is_allowed(*value)),
+        Values::Vector(vectors) => vectors.iter().position(|vector| !vector.iter().all(|value| is_allowed(*value))),
+    }
+}
+
+/// Whether a gauge of a model has no value, NaN, where there is nothing to measure: a gas before its first samples, the surface of a solid before
+/// its first drop.
+fn may_have_no_value(kind: Kind, column: &GaugeColumn) -> bool {
+    match kind {
+        Kind::Gas => true,
+        Kind::Dew => column.unit == "s" || ["mean_radius", "drop_radius", "polydispersity"].contains(&column.quantity),
+        _ => column.quantity.contains("arrival"),
+    }
+}
+
+/// The first value of gauges, maps and surfaces that is not a number where there must be one.
+fn not_a_number_beside(kind: Kind, model: &dyn Model) -> Option<String> {
+    let columns = model.gauge_columns();
+    let gauge = columns.iter().zip(model.gauge_row()).find(|(column, value)| {
+        if may_have_no_value(kind, column) { kind != Kind::Gas && value.is_infinite() } else { !value.is_finite() }
+    });
+    if let Some((column, value)) = gauge {
+        return Some(format!("gauge {} is {value}", column.header()));
+    }
+    // NaN where a map has nothing.
+    if let Some(map) = model.maps().iter().find(|map| map.values.iter().any(|value| value.is_infinite())) {
+        return Some(format!("map {} is infinite", map.name));
+    }
+    for surface in model.surfaces() {
+        // Times of what has not happened are NaN.
+        let is_allowed =
+            |column: &Column| if column.unit == "s" { |value: f64| !value.is_infinite() } else { f64::is_finite };
+        let bad = surface.columns.iter().find(|column| first_bad(column, is_allowed(column)).is_some());
+        if let Some(column) = bad {
+            return Some(format!("{} of surface {}", column.name, surface.name));
         }
     }
     None

@@ -1,9 +1,9 @@
-//! Tables: time series, gauges, summaries, camera paths, balls at the start.
+//! Tables: time series, gauges, summaries, camera paths, balls at the start; maps of runs and their times, trajectories of particles.
 
 use super::{none, on_file, path_of, written};
 use crate::Target;
 use corpuscle::{Simulation, camera_path};
-use corpuscle_output::{FrameFormat, GaugeTable, Summary};
+use corpuscle_output::{FrameFormat, GaugeTable, MapFiles, Summary, followed_paths};
 use corpuscle_scene::{Scene, Series};
 use std::path::Path;
 
@@ -22,6 +22,30 @@ pub(super) const TARGETS: &[Target] = &[
         corpus: "summary",
         read: summary,
         more: || written::file("summary.json", FrameFormat::None),
+    },
+    Target {
+        name: "map-times",
+        about: "maps/times.csv",
+        corpus: "map-times",
+        read: map_times,
+        more: || written::file("maps/times.csv", FrameFormat::None),
+    },
+    Target {
+        name: "map",
+        about: "maps of runs, GeoTIFF",
+        corpus: "map",
+        read: map,
+        more: || {
+            let names = ["maps/depth_000000.tif", "maps/max_depth.tif"];
+            names.iter().flat_map(|name| written::file(name, FrameFormat::None)).collect()
+        },
+    },
+    Target {
+        name: "followed",
+        about: "trajectories of particles, path.csv",
+        corpus: "followed",
+        read: followed,
+        more: || written::file("path.csv", FrameFormat::None),
     },
     Target { name: "camera-path", about: "camera paths", corpus: "camera-path", read: camera, more: none },
     Target { name: "balls-xyz", about: "balls at the start, extended XYZ", corpus: "xyz", read: balls_xyz, more: none },
@@ -58,6 +82,38 @@ fn summary(bytes: &[u8]) -> Result<String, String> {
     on_file("summary.json", bytes, |path| {
         let folder = path.parent().unwrap_or(Path::new(""));
         Summary::read(folder).map(|_| "a summary".into()).map_err(|error| without(&error.to_string(), path))
+    })
+}
+
+/// A folder with nothing but these times of maps.
+fn map_times(bytes: &[u8]) -> Result<String, String> {
+    on_file("times/maps/times.csv", bytes, |_| {
+        let run = path_of("times");
+        let maps = MapFiles::list(&run).map_err(|error| without(&error.to_string(), &run))?;
+        Ok(if maps.times().is_empty() { "no times" } else { "times" }.into())
+    })
+}
+
+/// A folder with one map of the whole run.
+fn map(bytes: &[u8]) -> Result<String, String> {
+    on_file("one/maps/max_depth.tif", bytes, |_| {
+        let run = path_of("one");
+        let told = |error: corpuscle_output::OutputError| without(&error.to_string(), &run);
+        let maps = MapFiles::list(&run).map_err(told)?;
+        let values = maps.read("max_depth").map_err(told)?;
+        let grid = maps.grid().map_err(told)?;
+        Ok(format!("{} {}", values.is_empty(), grid.columns > 1))
+    })
+}
+
+fn followed(bytes: &[u8]) -> Result<String, String> {
+    on_file("followed/path.csv", bytes, |_| {
+        let run = path_of("followed");
+        let paths = followed_paths(&run).map_err(|error| without(&error.to_string(), &run))?;
+        for path in &paths {
+            assert_eq!(path.times.len(), path.points.len());
+        }
+        Ok(if paths.is_empty() { "no paths" } else { "paths" }.into())
     })
 }
 
