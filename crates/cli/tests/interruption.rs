@@ -6,8 +6,9 @@ mod tool;
 
 use results::{compare, results};
 use std::fs;
+use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tool::{BALLS, DEW, Ended, LAKE, Place};
@@ -128,6 +129,22 @@ fn models() -> [(&'static str, &'static str, Vec<&'static str>); 4] {
     ]
 }
 
+/// A run that a signal met ends by it: at once, or told with how to go on. One that is only just begun has no handler of signals yet.
+fn assert_ended_by(signal: &str, output: &Output, when: &str) {
+    let number = match signal {
+        "-KILL" => 9,
+        "-INT" => 2,
+        _ => 15,
+    };
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(!told.contains("panicked"), "{when}: {told}");
+    if output.status.signal() == Some(number) {
+        return;
+    }
+    assert!(signal != "-KILL" && output.status.code() == Some(1), "{when}, {signal}: {} {told}", output.status);
+    assert!(told.contains("corpuscle run --resume ended"), "{when}, {signal}: {told}");
+}
+
 /// Ended at so many random moments by signals in turn; the run that is left goes on to the same bytes.
 fn ended_at_random_moments(signals: &[&str], moments: u64) {
     for (model, scene, long) in models() {
@@ -142,6 +159,7 @@ fn ended_at_random_moments(signals: &[&str], moments: u64) {
             true => vec!["run", "--resume", "ended"],
             false => [&["run", "scene.toml", "-o", "ended"], &long[..]].concat(),
         };
+        let mut hits = 0;
         let mut random = 0x9e37_79b9_7f4a_7c15_u64;
         for moment in 0..moments {
             let resumes = place.path("ended/checkpoint/state").exists();
@@ -153,18 +171,27 @@ fn ended_at_random_moments(signals: &[&str], moments: u64) {
                     fs::remove_dir_all(place.path("ended")).unwrap();
                 }
             }
-            let mut child = place.command(&begin(resumes)).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+            let mut child =
+                place.command(&begin(resumes)).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             sleep(duration.mul_f64((random >> 40) as f64 / (1 << 24) as f64 / 4.0));
             let name = signals[moment as usize % signals.len()];
-            if child.try_wait().unwrap().is_none() {
+            let is_live = child.try_wait().unwrap().is_none();
+            if is_live {
                 signal(name, &child);
             }
-            if child.wait().unwrap().success() {
+            let output = child.wait_with_output().unwrap();
+            if output.status.success() {
                 compare(&format!("at its end before signal {moment}"));
                 fs::remove_dir_all(place.path("ended")).unwrap();
+                continue;
             }
+            assert!(is_live, "{model}: ended by itself: {}", String::from_utf8_lossy(&output.stderr));
+            assert_ended_by(name, &output, &format!("{model}, moment {moment}"));
+            hits += 1;
         }
+        println!("{model}: {hits} of {moments} signals met a run and ended it");
+        assert!(2 * hits >= moments, "{model}: {hits} of {moments} signals met a run and ended it");
         let resumes = place.path("ended/checkpoint/state").exists();
         if !resumes {
             _ = fs::remove_dir_all(place.path("ended"));
