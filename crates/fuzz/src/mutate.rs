@@ -344,7 +344,7 @@ mod tests {
         let mut random = Random::new(3);
         let sizes: Vec<usize> = (0..5000).map(|_| mutator.next(&mut random).len()).collect();
         let large = sizes.iter().filter(|size| **size > 4 * LONGEST).count();
-        assert!(large >= 2 && large < 100 && sizes.iter().all(|size| *size <= LARGE), "{large}");
+        assert!((2..100).contains(&large) && sizes.iter().all(|size| *size <= LARGE), "{large}");
     }
 
     #[test]

@@ -100,8 +100,8 @@ fn map(bytes: &[u8]) -> Result<String, String> {
         let run = path_of("one");
         let told = |error: corpuscle_output::OutputError| without(&error.to_string(), &run);
         let maps = MapFiles::list(&run).map_err(told)?;
-        let values = maps.read("max_depth").map_err(told)?;
         let grid = maps.grid().map_err(told)?;
+        let values = maps.read("max_depth", grid.columns * grid.rows).map_err(told)?;
         Ok(format!("{} {}", values.is_empty(), grid.columns > 1))
     })
 }
