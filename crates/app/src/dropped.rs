@@ -1,6 +1,6 @@
-//! Files dropped on the window: terrain to be flooded, a scene, or a finished run.
+//! Terrain dropped on the window: the scene of a flood over it.
 
-use crate::{Source, Start};
+use crate::Source;
 use corpuscle::scene::{Scene, Terrain as Written, TerrainFile};
 use corpuscle::terrain::{Terrain, in_memory};
 use std::fmt::Write;
@@ -19,30 +19,11 @@ const INSET: f64 = 0.03;
 const FRAMES: f64 = 60.0;
 const ROWS: f64 = 240.0;
 
-/// The scene or run of a dropped file or folder. Returns when it has been read.
+/// A flood over the terrain in a file: water flows in at the head of its valley and leaves over its sides.
 ///
 /// # Errors
 /// A text that says what is wrong with it.
-pub fn open(path: &Path) -> Result<Start, String> {
-    if path.is_dir() {
-        return Ok(Start::Run(path.to_owned()));
-    }
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if ending == "toml" {
-        let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        return Ok(scene(path, text));
-    }
-    flood(path).map(Start::Scene)
-}
-
-/// The scene of a dropped file with its text.
-pub fn scene(path: &Path, text: String) -> Start {
-    let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
-    Start::Scene(Source { name: path.display().to_string(), text, folder, changes: Vec::new() })
-}
-
-/// A flood over the terrain in a file: water flows in at the head of its valley and leaves over its sides.
-fn flood(path: &Path) -> Result<Source, String> {
+pub fn flood(path: &Path) -> Result<Source, String> {
     let path = match in_memory(path) {
         Some(_) => path.to_owned(),
         None => fs::canonicalize(path).map_err(|error| format!("{}: {error}", path.display()))?,
@@ -137,7 +118,7 @@ mod tests {
     #[test]
     fn terrain_is_flooded_from_the_head_of_its_valley() {
         let folder = tempfile::tempdir().unwrap();
-        let Ok(Start::Scene(source)) = open(&grid(folder.path())) else { panic!("no scene") };
+        let source = flood(&grid(folder.path())).unwrap();
         let scene = source.scene().unwrap();
         let flood = scene.flood().unwrap();
         let [x, y] = flood.flood.inflow[0].at.unwrap();
@@ -148,19 +129,5 @@ mod tests {
         let corpuscle::scene::Series::Constant(discharge) = flood.flood.inflow[0].discharge_m3_per_s else { panic!() };
         assert_eq!((discharge * 800.0, flood.flood.spacing_m), (water, Some(5.0)));
         assert!(corpuscle::Simulation::open(scene, Path::new("")).is_ok());
-    }
-
-    #[test]
-    fn what_is_no_terrain_is_refused_and_scenes_and_runs_are_opened() {
-        let folder = tempfile::tempdir().unwrap();
-        assert!(matches!(open(folder.path()), Ok(Start::Run(_))));
-        let file = folder.path().join("notes.txt");
-        fs::write(&file, "no terrain").unwrap();
-        assert!(open(&file).unwrap_err().contains("notes.txt"));
-        assert!(open(&folder.path().join("none.tif")).unwrap_err().contains("none.tif"));
-        let scene = folder.path().join("own.TOML");
-        fs::write(&scene, corpuscle::scene::builtin("flood/valley").unwrap().text).unwrap();
-        let Ok(Start::Scene(source)) = open(&scene) else { panic!("no scene") };
-        assert!(source.scene().is_ok() && source.folder == folder.path());
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{in_memory, without_disk};
 use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, Cursor, ErrorKind, Read};
 use std::path::Path;
 
 /// Most bytes of what is no file with a length of its own: a pipe, a device.
@@ -24,6 +24,20 @@ pub fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     bytes.try_reserve_exact(usize::try_from(length).unwrap_or(usize::MAX))?;
     read_at_most(file, length.max(MOST_BYTES), &mut bytes)?;
     Ok(bytes)
+}
+
+/// A file in memory or on the disk, to be read, and how many bytes it says that it has.
+///
+/// # Errors
+/// As [`read_bytes`].
+pub fn open_file(path: &Path) -> io::Result<(Box<dyn Read>, u64)> {
+    if let Some(bytes) = in_memory(path) {
+        let length = bytes.len() as u64;
+        return Ok((Box::new(Cursor::new(bytes)), length));
+    }
+    let file = File::open(path).map_err(without_disk)?;
+    let length = file.metadata()?.len();
+    Ok((Box::new(file), length))
 }
 
 /// All text of a file, as [`read_bytes`] reads it.

@@ -32,7 +32,7 @@ pub use check::{Check, Checked, is_name};
 pub use dew::Dew;
 pub use error::{Place, Problem, SceneError};
 pub use expression::{Expression, ExpressionError};
-pub use files::{read_bytes, read_text};
+pub use files::{open_file, read_bytes, read_text};
 pub use flood::*;
 pub use gas::*;
 pub use kernel::KernelName;

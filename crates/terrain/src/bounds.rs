@@ -1,7 +1,9 @@
 //! A rectangle on the ground.
 
+use serde::{Deserialize, Serialize};
+
 /// A rectangle in model coordinates, m.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
     /// West side.
     pub x_min: f64,

@@ -1,7 +1,7 @@
 //! From a terrain's own coordinates to model metres and back.
 
-use crate::TerrainError;
 use crate::system::{ReferenceSystem, WGS_84};
+use crate::{Georeference, TerrainError};
 use proj4rs::Proj;
 use proj4rs::transform::transform;
 
@@ -37,6 +37,19 @@ impl Frame {
             Kind::Scaled(system.metres_per_unit)
         };
         Ok(Self { kind, own: system.projection(), wgs_84: wgs_84() })
+    }
+
+    /// The frame of a grid of so many columns and rows, centred on it.
+    pub(crate) fn of_grid(georeference: &Georeference, size: [usize; 2]) -> Result<Self, String> {
+        let Some(system) = &georeference.system else { return Ok(Self::plain()) };
+        let centre = georeference.place(size.map(|count| 0.5 * count as f64 - 0.5));
+        if system.geographic && !(centre[0].abs() <= 360.0 && centre[1].abs() <= 89.0) {
+            return Err(format!(
+                "its middle {centre:?} is no longitude and latitude in degrees, which its reference system {} wants",
+                system.name
+            ));
+        }
+        Self::of(system, centre)
     }
 
     /// Model metres over the own coordinates' unit, where the two differ by nothing else.

@@ -5,7 +5,7 @@ use crate::holes;
 use crate::raster::MOST_CELLS;
 use crate::surface::Surface;
 use crate::terrain::{Ground, Terrain};
-use crate::{Bounds, Georeference, MapGrid, Raster, TerrainError};
+use crate::{Bounds, MapGrid, Raster, TerrainError};
 use corpuscle_scene::NoData;
 use rayon::prelude::*;
 use std::path::Path;
@@ -32,7 +32,7 @@ pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> R
     let has_holes = raster.values.iter().any(|height| height.is_nan());
     let valid = has_holes.then(|| raster.values.iter().map(|height| !height.is_nan()).collect());
     holes::close(&mut raster.values, size, no_data);
-    let frame = frame(&raster).map_err(|what| TerrainError::unusable(path, what))?;
+    let frame = Frame::of_grid(&raster.georeference, size).map_err(|what| TerrainError::unusable(path, what))?;
     let map_grid =
         MapGrid { columns: size[0], rows: size[1], georeference: raster.georeference.clone(), frame: Arc::new(frame) };
     let geographic = raster.georeference.system.as_ref().is_some_and(|system| system.geographic);
@@ -71,21 +71,6 @@ fn check_heights(raster: &Raster, path: &Path, warnings: &mut Vec<String>) -> Re
         warnings.push(format!("{} has heights from {lowest} to {highest} m; {hint}.", path.display()));
     }
     Ok(())
-}
-
-/// The frame of a raster, centred on it.
-fn frame(raster: &Raster) -> Result<Frame, String> {
-    let Georeference { system, .. } = &raster.georeference;
-    let Some(system) = system else { return Ok(Frame::plain()) };
-    let middle = [raster.columns, raster.rows].map(|count| 0.5 * count as f64 - 0.5);
-    let centre = raster.georeference.place(middle);
-    if system.geographic && !(centre[0].abs() <= 360.0 && centre[1].abs() <= 89.0) {
-        return Err(format!(
-            "its middle {centre:?} is no longitude and latitude in degrees, which its reference system {} wants",
-            system.name
-        ));
-    }
-    Frame::of(system, centre)
 }
 
 /// The heights from the south-west, row by row.

@@ -5,6 +5,7 @@
 //! the mean height over a polygon, for finite-volume schemes.
 
 mod bounds;
+mod bytes;
 mod conversion;
 mod error;
 mod files;

@@ -3,6 +3,7 @@
 use crate::TerrainError;
 use geotiff_reader::geokeys::{self, GeoKeyDirectory, GeoKeyValue};
 use proj4rs::Proj;
+use serde::{Deserialize, Serialize};
 
 /// PROJ definition of longitude and latitude on WGS 84 (EPSG:4326).
 pub(crate) const WGS_84: &str = "+proj=longlat +datum=WGS84 +no_defs";
@@ -15,7 +16,7 @@ const GEOCENTRIC: u16 = 3;
 const USER_DEFINED: u16 = 32767;
 
 /// A coordinate reference system.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceSystem {
     /// What it is called: `EPSG:27700`, a PROJ string, or the file's own words.
     pub name: String,
@@ -98,7 +99,8 @@ impl ReferenceSystem {
         }
     }
 
-    /// The system as well-known text (WKT 1), if it has an EPSG code that is in the tables.
+    /// The system as well-known text (WKT 1), with feature `well-known-text`, if it has an EPSG code that is in the tables.
+    #[cfg(feature = "well-known-text")]
     pub fn well_known_text(&self) -> Option<&'static str> {
         Some(crs_definitions::from_code(self.epsg?)?.wkt)
     }

@@ -150,6 +150,21 @@ impl Terrain {
         }
     }
 
+    /// [`Self::height`] at the nodes of a grid over the bounds, `[eastwards, northwards]`, at least 2 each, row by row from the
+    /// south-west, in single precision. Nothing is kept for it.
+    pub fn heights_on(&self, nodes: [usize; 2]) -> Vec<f32> {
+        let Bounds { x_min, y_min, .. } = self.bounds;
+        let [width, height] = self.bounds.size();
+        let along = |from: f64, length: f64, nodes: usize| -> Vec<f64> {
+            (0..nodes).map(|node| from + node as f64 * (length / (nodes - 1) as f64)).collect()
+        };
+        let (x, y) = (along(x_min, width, nodes[0]), along(y_min, height, nodes[1]));
+        match &self.ground {
+            Ground::Surface(surface) => surface.heights_on(&x, &y),
+            Ground::Function(_) => y.iter().flat_map(|y| x.iter().map(|x| self.height(*x, *y) as f32)).collect(),
+        }
+    }
+
     /// Height of the ground, m, and its slope `[dz/dx, dz/dy]`. Outside the bounds those of the nearest place inside.
     #[inline]
     pub fn height_and_slope(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
@@ -201,6 +216,11 @@ impl Terrain {
     pub fn is_valid_cell(&self, column: usize, row: usize) -> bool {
         let MapGrid { columns, rows, .. } = self.map_grid;
         column < columns && row < rows && self.valid.as_ref().is_none_or(|valid| valid[row * columns + column])
+    }
+
+    /// True where cells of the map grid have no data.
+    pub fn has_holes(&self) -> bool {
+        self.valid.is_some()
     }
 
     /// From the terrain's own coordinates (longitude and latitude in degrees for a geographic one) to model metres.

@@ -116,6 +116,30 @@ export class Stage {
     }, files.map(([name, bytes]) => [name, [...bytes]]));
   }
 
+  /** Drops a file whose bytes a function makes in the page, of numbers: too large to be sent there. */
+  dropMade(name, make, numbers) {
+    return this.page.evaluate(([name, make, numbers]) => {
+      const data = new DataTransfer();
+      data.items.add(new File([eval(`(${make})`)(...numbers)], name));
+      const canvas = document.getElementById("window");
+      canvas.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+    }, [name, make.toString(), numbers]);
+  }
+
+  /** Begins to note how long the page's own thread is busy without a break; gives what tells the longest time so far, ms. */
+  async standstill() {
+    await this.page.evaluate(() => {
+      let before = performance.now();
+      window.standstill = 0;
+      setInterval(() => {
+        const now = performance.now();
+        window.standstill = Math.max(window.standstill, now - before);
+        before = now;
+      }, 10);
+    });
+    return () => this.page.evaluate(() => window.standstill);
+  }
+
   /** Moves fingers over the page, each from one point to another. */
   async touch(fingers) {
     const session = await this.page.context().newCDPSession(this.page);

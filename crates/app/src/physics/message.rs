@@ -3,8 +3,10 @@
 use super::{Backend, Command, Event, Opened, scene_text};
 use crate::snapshot::Snapshot;
 use corpuscle::model::Surface;
-use corpuscle::pictures::Scenery;
+use corpuscle::pictures::{Made, Scenery};
 use corpuscle::scene::Scene;
+use corpuscle::terrain::Terrain;
+use corpuscle_render::HeightField;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -17,7 +19,9 @@ pub(super) enum ToWorker {
     /// A command.
     Command(Command),
     /// A file to be held in memory under a path.
-    File(PathBuf, Vec<u8>),
+    File(PathBuf, #[serde(with = "serde_bytes")] Vec<u8>),
+    /// Make a scene of a flood over the terrain in a file that is held.
+    Flood(PathBuf),
     /// Free all files in memory but those in this folder.
     KeepFiles(PathBuf),
     /// The last snapshot was taken: another may be sent.
@@ -34,6 +38,8 @@ pub(super) enum FromWorker {
     Fault(String),
     Broken(String),
     Snapshot(Arc<Snapshot>),
+    /// Name and text of the scene of [`ToWorker::Flood`], or why there is none.
+    Flood(Result<(String, String), String>),
 }
 
 /// A scene that is open at its start, without what the window makes anew from it.
@@ -43,20 +49,49 @@ pub(super) struct OpenedMessage {
     #[serde(with = "scene_text")]
     scene: Box<Scene>,
     surfaces: Vec<Surface>,
+    /// The terrain ([`Terrain::to_bytes`]): the page does not read it again.
+    #[serde(with = "serde_bytes")]
+    terrain: Option<Vec<u8>>,
+    /// The heights of the ground as drawn.
+    drawn: Option<Drawn>,
     gauges: Vec<String>,
     warnings: Vec<String>,
     computed_on: Option<String>,
     end: f64,
 }
 
+/// Heights on a grid, as numbers that are copied whole.
+#[derive(Serialize, Deserialize)]
+struct Drawn {
+    origin: [f64; 2],
+    cell: [f64; 2],
+    nodes: [usize; 2],
+    #[serde(with = "serde_bytes")]
+    heights: Vec<u8>,
+}
+
+impl Drawn {
+    fn of(field: HeightField) -> Self {
+        let HeightField { origin, cell, nodes, heights } = field;
+        Self { origin, cell, nodes, heights: bytemuck::cast_slice(&heights).to_vec() }
+    }
+
+    fn open(self) -> HeightField {
+        let Self { origin, cell, nodes, heights } = self;
+        HeightField { origin, cell, nodes, heights: bytemuck::pod_collect_to_vec(&heights) }
+    }
+}
+
 impl OpenedMessage {
-    /// The scene as the window takes it: terrain and shapes of solids are made again.
+    /// The scene as the window takes it: shapes of solids, and ground from a formula, are made again.
     ///
     /// # Errors
     /// Why it cannot be opened, as text.
     pub fn open(self) -> Result<Opened, String> {
-        let Self { number, scene, surfaces, gauges, warnings, computed_on, end } = self;
-        let scenery = Scenery::of_scene((*scene).clone(), surfaces).map_err(|error| error.to_string())?;
+        let Self { number, scene, surfaces, terrain, drawn, gauges, warnings, computed_on, end } = self;
+        let terrain = terrain.map(|bytes| Terrain::from_bytes(&bytes)).transpose()?;
+        let made = Made { terrain, drawn: drawn.map(Drawn::open), surfaces };
+        let scenery = Scenery::of_scene((*scene).clone(), made).map_err(|error| error.to_string())?;
         let scene = *scene;
         Ok(Opened { number, scene, pictures: None, scenery, gauges, warnings, computed_on, history: None, end })
     }
@@ -69,7 +104,19 @@ impl FromWorker {
             Event::Opened(opened) => {
                 let Opened { number, scene, scenery, gauges, warnings, computed_on, end, .. } = *opened;
                 let (scene, surfaces) = (Box::new(scene), scenery.surfaces().to_vec());
-                Self::Opened(OpenedMessage { number, scene, surfaces, gauges, warnings, computed_on, end })
+                let terrain = scenery.terrain().and_then(Terrain::to_bytes);
+                let drawn = scenery.drawn_heights().map(Drawn::of);
+                Self::Opened(OpenedMessage {
+                    number,
+                    scene,
+                    surfaces,
+                    terrain,
+                    drawn,
+                    gauges,
+                    warnings,
+                    computed_on,
+                    end,
+                })
             }
             Event::Refused(what) => Self::Refused(what),
             Event::NotChanged(what) => Self::NotChanged(what),

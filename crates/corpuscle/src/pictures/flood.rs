@@ -26,8 +26,9 @@ const OWN_VIEW: OwnView =
     OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.06, margins: [0.13, 0.06, 0.2, 0.09] };
 /// Azimuth of the sun to the left of the camera, radians.
 const SUN: f64 = -1.0;
-/// Most nodes per side of the drawn terrain: what any texture can hold, and a terrain of 4096 x 4096 has.
-const MOST_NODES: usize = 4097;
+/// Most nodes per side of the drawn terrain: what any texture can hold, and a terrain of 4096 x 4096 has. Half as many where
+/// addresses have 32 bits, as in a page of a browser, which has one thread to prepare them.
+const MOST_NODES: usize = if usize::BITS > 32 { 4097 } else { 2049 };
 /// Height of the block below its lowest elevation, fraction of its width.
 const BASE: f64 = 0.06;
 /// Height of obstacles without a crest, m.
@@ -140,13 +141,14 @@ impl FloodPicture {
         context: &DrawContext,
         settings: &Settings,
         ground: &Ground,
+        drawn: HeightField,
         picture: &PictureSettings,
     ) -> Result<Self, Error> {
         let PictureSettings { ground: ground_style, heights, .. } = picture;
         let heights = *heights;
         let bounds = ground.bounds();
         let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
-        let field = height_field(ground, heights, MOST_NODES);
+        let field = raised_ground(drawn, heights);
         let [low, high] = field.range();
         let base = low - BASE * (to[0] - from[0]).max(to[1] - from[1]);
         // The paths of a scene that was opened are absolute.
@@ -263,24 +265,36 @@ impl FloodPicture {
     }
 }
 
-/// Heights of the ground at the nodes of its own grid, at most so many a side, so many times as high as they are.
-fn height_field(ground: &Ground, heights: f64, most: usize) -> HeightField {
+/// Heights of the ground as drawn: at the nodes of its own grid, at most so many a side.
+pub(super) fn drawn_ground(ground: &Ground) -> HeightField {
     let grid = ground.map_grid();
-    sampled(ground, heights, [grid.columns, grid.rows].map(|cells| (cells + 1).min(most)))
+    sampled(ground, [grid.columns, grid.rows].map(|cells| (cells + 1).min(MOST_NODES)))
 }
 
-/// The same at so many nodes `[eastwards, northwards]`.
-pub(super) fn sampled(ground: &Ground, heights: f64, nodes: [usize; 2]) -> HeightField {
+/// Ground so many times as high as it is.
+fn raised_ground(mut ground: HeightField, times: f64) -> HeightField {
+    if times != 1.0 {
+        ground.heights.iter_mut().for_each(|height| *height = (times * f64::from(*height)) as f32);
+    }
+    ground
+}
+
+/// Heights of the ground at so many nodes `[eastwards, northwards]`.
+pub(super) fn sampled(ground: &Ground, nodes: [usize; 2]) -> HeightField {
     let bounds = ground.bounds();
-    let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
-    let grid = ground.map_grid();
-    let is_coarser = nodes[0] < grid.columns || nodes[1] < grid.rows;
-    HeightField::sampled(from, to, nodes, |x, y| {
-        if !has_data(ground, [x, y]) {
-            return f64::NAN;
+    let nodes = nodes.map(|count| count.max(2));
+    let [width, height] = bounds.size();
+    let cell = [width / (nodes[0] - 1) as f64, height / (nodes[1] - 1) as f64];
+    let mut field =
+        HeightField { origin: [bounds.x_min, bounds.y_min], cell, nodes, heights: ground.heights_on(nodes) };
+    if ground.has_holes() {
+        for index in 0..field.heights.len() {
+            if !has_data(ground, field.place(index)) {
+                field.heights[index] = f32::NAN;
+            }
         }
-        heights * if is_coarser { ground.height_once(x, y) } else { ground.height(x, y) }
-    })
+    }
+    field
 }
 
 /// The colours of shallow to deep water, which is about so deep, m.

@@ -34,7 +34,7 @@ impl FloodSketch {
     pub(crate) fn new(flood: &Flood, terrain: &Terrain) -> Result<Self, Error> {
         let bounds = terrain.bounds();
         let corners = [[bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]];
-        let field = sampled(terrain, 1.0, nodes(terrain));
+        let field = sampled(terrain, nodes(terrain));
         let [low, high] = field.range();
         let mut image = shaded(&field);
         // The paths of a scene that was opened are absolute.

@@ -51,7 +51,8 @@ fn look(gpu: &Gpu, name: &str, time: f64, spacing: &str) -> Found {
     let terrain = simulation.terrain().unwrap().clone();
     let context = DrawContext::new(gpu, &settings, Some(&terrain)).unwrap();
     let FloodScene { flood, .. } = simulation.scene().flood().unwrap();
-    let mut picture = FloodPicture::new(&context, flood, &terrain, &settings).unwrap();
+    let mut picture =
+        FloodPicture::new(&context, flood, &terrain, super::flood::drawn_ground(&terrain), &settings).unwrap();
     let frame = simulation.model().frame();
     let moment = Moment { frame: &frame, on_device: None, paths: &[], container: None };
     let shown = picture.draw(&context, "", &moment).unwrap();

@@ -38,7 +38,7 @@ use flood::FloodPicture;
 pub use ground_style::GroundStyle;
 pub use particles::Particles;
 pub use photo::ground_picture;
-pub use scenery::Scenery;
+pub use scenery::{Made, Scenery};
 pub use sheet::Sheet;
 pub use show::{Quality, Shown};
 pub use sketch::{Disc, GroundMap, Line, Patch, Sketch, SketchView, Sketcher, Sketches};
@@ -172,7 +172,7 @@ impl Pictures {
     /// [`Error::Render`] where the pictures are larger than the device can hold.
     pub fn of_flood(gpu: &Gpu, flood: &Flood, ground: &Terrain, settings: PictureSettings) -> Result<Self, Error> {
         let context = DrawContext::new(gpu, &settings, Some(ground))?;
-        let flood = FloodPicture::new(&context, flood, ground, &settings)?;
+        let flood = FloodPicture::new(&context, flood, ground, flood::drawn_ground(ground), &settings)?;
         Ok(Self { context, title: String::new(), subject: Box::new(flood) })
     }
 

@@ -1,7 +1,9 @@
 //! What pictures need of a scene.
 
+use super::flood::drawn_ground;
 use crate::{Error, Simulation, models};
 use corpuscle_model::Surface;
+use corpuscle_render::HeightField;
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -13,6 +15,19 @@ pub struct Scenery {
     pub(super) scene: Scene,
     pub(super) terrain: Option<Arc<Terrain>>,
     surfaces: Vec<Surface>,
+    /// The heights of the ground as drawn, where they have been found already.
+    drawn: Option<HeightField>,
+}
+
+/// What was made of a scene elsewhere, and need not be made again.
+#[derive(Debug, Default)]
+pub struct Made {
+    /// The terrain, if there is one that can be sent.
+    pub terrain: Option<Terrain>,
+    /// The heights of the ground as drawn ([`Scenery::drawn_heights`]).
+    pub drawn: Option<HeightField>,
+    /// The surfaces of the model, in any case.
+    pub surfaces: Vec<Surface>,
 }
 
 impl Scenery {
@@ -36,18 +51,27 @@ impl Scenery {
         &self.surfaces
     }
 
-    /// The data of a scene that was opened elsewhere, with the surfaces of its model there: terrain and shapes of solids are made again,
-    /// from the scene as run.
+    /// Finds the heights of the ground as drawn, which takes long for a large terrain; none where there is none.
+    pub fn drawn_heights(&self) -> Option<HeightField> {
+        self.terrain().map(|terrain| self.drawn.clone().unwrap_or_else(|| drawn_ground(terrain)))
+    }
+
+    /// The data of a scene that was opened elsewhere, with what was made of it there. Terrain that is not given and shapes of solids are
+    /// made again, from the scene as run.
     ///
     /// # Errors
     /// Where terrain or a solid cannot be made.
-    pub fn of_scene(scene: Scene, mut surfaces: Vec<Surface>) -> Result<Self, Error> {
+    pub fn of_scene(scene: Scene, made: Made) -> Result<Self, Error> {
+        let Made { terrain, drawn, mut surfaces } = made;
         let (kind, folder) = (models::of(&scene)?, Path::new(""));
-        let terrain = kind.terrain(&scene, folder)?;
+        let terrain = match terrain {
+            Some(terrain) => Some(Arc::new(terrain)),
+            None => kind.terrain(&scene, folder)?,
+        };
         for (surface, shape) in surfaces.iter_mut().zip(kind.shapes(&scene, folder)?) {
             surface.shape = shape;
         }
-        Ok(Self { scene, terrain, surfaces })
+        Ok(Self { scene, terrain, surfaces, drawn })
     }
 
     /// The data of a scene in its current state.
@@ -56,6 +80,7 @@ impl Scenery {
             scene: simulation.scene().clone(),
             terrain: simulation.terrain().cloned(),
             surfaces: simulation.model().surfaces(),
+            drawn: None,
         }
     }
 }

@@ -52,7 +52,7 @@ impl HeightField {
     }
 
     /// Where a node is, m.
-    pub(crate) fn place(&self, index: usize) -> [f64; 2] {
+    pub fn place(&self, index: usize) -> [f64; 2] {
         let at = [index % self.nodes[0], index / self.nodes[0]];
         [0, 1].map(|k| self.origin[k] + self.cell[k] * at[k] as f64)
     }

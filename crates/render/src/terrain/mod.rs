@@ -16,6 +16,7 @@ use crate::shared::Ground;
 use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders, static_layer};
 use corpuscle_gpu::{Gpu, GroupLayout, Image, texture_2d, wgpu};
 use half::f16;
+use rayon::prelude::*;
 use walls::Walls;
 
 /// How much the brightness of the ground differs within a cell.
@@ -201,13 +202,19 @@ fn upload_heights(gpu: &Gpu, stage: &Stage, field: &HeightField) -> Result<wgpu:
 fn upload_slopes(gpu: &Gpu, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
     let slope =
         |index: usize| if field.heights[index].is_finite() { field.slope(index) } else { [f16::MAX.to_f32(), 0.0] };
-    let slopes: Vec<u8> =
-        (0..field.heights.len()).flat_map(slope).flat_map(|slope| f16::from_f32(slope).to_le_bytes()).collect();
-    upload(gpu, "slopes", field.size(), wgpu::TextureFormat::Rg16Float, &slopes)
+    let slopes: Vec<[u8; 4]> = (0..field.heights.len())
+        .into_par_iter()
+        .map(|index| {
+            let [east, north] = slope(index).map(|slope| f16::from_f32(slope).to_le_bytes());
+            [east[0], east[1], north[0], north[1]]
+        })
+        .collect();
+    upload(gpu, "slopes", field.size(), wgpu::TextureFormat::Rg16Float, slopes.as_flattened())
 }
 
 /// The drape, its rows turned to begin in the south as those of heights do.
 fn upload_colours(gpu: &Gpu, colours: &Image) -> Result<wgpu::TextureView, RenderError> {
-    let rows: Vec<u8> = colours.rgba.chunks_exact(4 * colours.width as usize).rev().flatten().copied().collect();
+    let mut rows = Vec::with_capacity(colours.rgba.len());
+    colours.rgba.chunks_exact(4 * colours.width as usize).rev().for_each(|row| rows.extend_from_slice(row));
     upload(gpu, "drape", [colours.width, colours.height], wgpu::TextureFormat::Rgba8UnormSrgb, &rows)
 }

@@ -2,6 +2,7 @@
 
 use super::HeightField;
 use corpuscle_gpu::Image;
+use rayon::prelude::*;
 
 /// Meadow, dry grass, rock, bare height; sRGB.
 const MEADOW: [f32; 3] = [94.0, 108.0, 64.0];
@@ -15,13 +16,13 @@ const STEEP: [f32; 2] = [0.45, 1.1];
 pub fn natural_colours(field: &HeightField) -> Image {
     let [columns, rows] = field.nodes;
     let [low, high] = field.range();
-    let mut rgba = Vec::with_capacity(4 * columns * rows);
-    for row in (0..rows).rev() {
-        for column in 0..columns {
+    let mut rgba = vec![0; 4 * columns * rows];
+    rgba.par_chunks_exact_mut(4 * columns).enumerate().for_each(|(from_north, line)| {
+        let row = rows - 1 - from_north;
+        for (column, pixel) in line.chunks_exact_mut(4).enumerate() {
             let index = row * columns + column;
             let height = f64::from(field.heights[index]);
             if height.is_nan() {
-                rgba.extend([0; 4]);
                 continue;
             }
             let part = ((height - low) / (high - low).max(1e-9)) as f32;
@@ -30,11 +31,11 @@ pub fn natural_colours(field: &HeightField) -> Image {
             let raised = part + 0.22 * (mottle - 0.5);
             let grown = mix(mix(MEADOW, GRASS, smooth(0.1, 0.6, raised)), HEIGHTS, smooth(0.6, 1.0, raised));
             let steep = smooth(STEEP[0], STEEP[1], east.hypot(north) + 0.25 * (mottle - 0.5));
-            let colour = mix(grown, ROCK, steep).map(|channel| channel * (0.92 + 0.16 * mottle));
-            rgba.extend(colour.map(|channel| channel.clamp(0.0, 255.0) as u8));
-            rgba.push(255);
+            let [red, green, blue] =
+                mix(grown, ROCK, steep).map(|channel| (channel * (0.92 + 0.16 * mottle)).clamp(0.0, 255.0) as u8);
+            pixel.copy_from_slice(&[red, green, blue, 255]);
         }
-    }
+    });
     Image { width: columns as u32, height: rows as u32, rgba }
 }
 

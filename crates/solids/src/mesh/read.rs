@@ -2,6 +2,7 @@
 
 use super::{MOST_BYTES, MOST_TRIANGLES, Mesh, Triangles, gltf, obj, ply, stl};
 use crate::SolidError;
+use corpuscle_scene::open_file;
 use std::io::Read;
 use std::path::Path;
 
@@ -14,17 +15,13 @@ pub(super) fn read(path: &Path, unit: Option<f64>) -> Result<Mesh, SolidError> {
             "the file has {bytes} bytes; {MOST_BYTES} are possible. Make a coarser mesh: one finer than the particles is of no use"
         ))
     };
-    let bytes = std::fs::metadata(path).map_err(unreadable)?.len();
+    let (file, bytes) = open_file(path).map_err(unreadable)?;
     if bytes > MOST_BYTES {
         return Err(too_long(&bytes.to_string()));
     }
     if extension == "stl" {
         let mut head = Vec::new();
-        std::fs::File::open(path)
-            .map_err(unreadable)?
-            .take(stl::HEAD as u64)
-            .read_to_end(&mut head)
-            .map_err(unreadable)?;
+        file.take(stl::HEAD as u64).read_to_end(&mut head).map_err(unreadable)?;
         refuse_too_many(stl::count_told(&head, bytes).unwrap_or(0)).map_err(wrong)?;
     }
     let content = read_at_most(path, MOST_BYTES).map_err(unreadable)?.ok_or_else(|| too_long("too many"))?;
@@ -56,7 +53,7 @@ pub(super) fn read(path: &Path, unit: Option<f64>) -> Result<Mesh, SolidError> {
 /// All bytes of a file; none where there are more than `most`, as of a device that has no end.
 pub(super) fn read_at_most(path: &Path, most: u64) -> std::io::Result<Option<Vec<u8>>> {
     let mut content = Vec::new();
-    std::fs::File::open(path)?.take(most + 1).read_to_end(&mut content)?;
+    open_file(path)?.0.take(most + 1).read_to_end(&mut content)?;
     Ok((content.len() as u64 <= most).then_some(content))
 }
 

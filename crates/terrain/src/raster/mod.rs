@@ -22,8 +22,12 @@ use flate2::read::GzDecoder;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
-/// A raster may have this many cells: 10,000 x 10,000. Beyond, the smooth surface alone takes more than 3 GB where all of it is looked at.
-pub(crate) const MOST_CELLS: u64 = 100_000_000;
+/// A raster may have this many cells: 10,000 x 10,000, beyond which the smooth surface alone takes more than 3 GB where all of it is
+/// looked at; 5,000 x 5,000 where addresses have 32 bits, as in a page of a browser.
+pub(crate) const MOST_CELLS: u64 = if usize::BITS > 32 { 100_000_000 } else { 25_000_000 };
+
+/// What more can be done about a raster with too many cells.
+const OR_ELSE: &str = if usize::BITS > 32 { "" } else { ", or open it with the program, which takes 100 million" };
 
 /// The most text that is unpacked from a compressed grid: 20 characters for each of the cells a raster may have.
 const MOST_TEXT: u64 = 20 * MOST_CELLS;
@@ -189,7 +193,7 @@ pub(crate) fn check_size(path: &Path, size: [usize; 2]) -> Result<(), TerrainErr
     if columns.checked_mul(rows).is_none_or(|cells| cells > MOST_CELLS) {
         let what = format!(
             "it says that it has {columns} x {rows} cells, more than the {} million that can be used; cut out the part \
-             that matters (`corpuscle terrain clip`) or make it coarser (`gdalwarp -tr`)",
+             that matters (`corpuscle terrain clip`) or make it coarser (`gdalwarp -tr`){OR_ELSE}",
             MOST_CELLS / 1_000_000
         );
         return Err(TerrainError::unusable(path, what));

@@ -50,7 +50,7 @@ impl Block {
 pub(super) struct Heights {
     values: Values,
     /// Columns and rows.
-    size: [usize; 2],
+    pub size: [usize; 2],
 }
 
 /// Numbers in single precision where it holds each of them exactly, which takes half the memory.
@@ -69,6 +69,33 @@ impl Heights {
             Values::Double(heights)
         };
         Self { values, size }
+    }
+
+    /// The heights as the bytes of their numbers, row by row from the south-west.
+    pub fn bytes(&self) -> &[u8] {
+        match &self.values {
+            Values::Single(values) => bytemuck::cast_slice(values),
+            Values::Double(values) => bytemuck::cast_slice(values),
+        }
+    }
+
+    /// True where they are numbers in single precision.
+    pub fn is_single(&self) -> bool {
+        matches!(self.values, Values::Single(_))
+    }
+
+    /// The heights of [`Heights::bytes`]; none where these are not as many numbers as the grid has nodes.
+    pub fn of_bytes(bytes: &[u8], size: [usize; 2], is_single: bool) -> Option<Self> {
+        let width = if is_single { size_of::<f32>() } else { size_of::<f64>() };
+        if size[0].checked_mul(size[1])?.checked_mul(width)? != bytes.len() || bytes.is_empty() {
+            return None;
+        }
+        let values = if is_single {
+            Values::Single(bytemuck::pod_collect_to_vec(bytes))
+        } else {
+            Values::Double(bytemuck::pod_collect_to_vec(bytes))
+        };
+        Some(Self { values, size })
     }
 
     /// The nodes of the grid with one ring of nodes round it, `count` columns and rows from `first` on, row by row.

@@ -13,6 +13,7 @@ use crate::Bounds;
 use blocks::{Block, Heights, Node, Nodes, SIDE, STRIDE};
 use corpuscle_simd::{LANES, Lanes, Simd, SimdBase, transposed};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
 /// A smooth surface as the nodes of its bicubic Hermite patches, in single precision.
@@ -64,6 +65,17 @@ impl GroundPatches {
     }
 }
 
+/// All of a surface but its heights.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct SurfaceParts {
+    /// Columns and rows of the heights.
+    size: [usize; 2],
+    /// True for heights in single precision.
+    is_single: bool,
+    corner: [f64; 2],
+    per_metre: [f64; 2],
+}
+
 /// A smooth surface through heights on a regular grid.
 #[derive(Debug)]
 pub(crate) struct Surface {
@@ -85,16 +97,34 @@ impl Surface {
     /// neighbours `cell` apart. It reaches one cell beyond the outermost nodes, going on as it ends there.
     pub(crate) fn new(heights: Vec<f64>, [columns, rows]: [usize; 2], first: [f64; 2], cell: [f64; 2]) -> Self {
         assert!(columns > 0 && rows > 0 && heights.len() == columns * rows, "a surface needs all its heights");
-        let patches = [columns + 1, rows + 1];
+        let corner = [first[0] - cell[0], first[1] - cell[1]];
+        Self::through(Heights::new(heights, [columns, rows]), corner, [1.0 / cell[0], 1.0 / cell[1]])
+    }
+
+    fn through(heights: Heights, corner: [f64; 2], per_metre: [f64; 2]) -> Self {
+        let patches = heights.size.map(|count| count + 1);
         let [blocks_in_row, rows_of_blocks] = patches.map(|count| count.div_ceil(SIDE));
-        Self {
-            heights: Heights::new(heights, [columns, rows]),
-            blocks: (0..blocks_in_row * rows_of_blocks).map(|_| OnceLock::new()).collect(),
-            blocks_in_row,
-            patches,
-            corner: [first[0] - cell[0], first[1] - cell[1]],
-            per_metre: [1.0 / cell[0], 1.0 / cell[1]],
-        }
+        let blocks = (0..blocks_in_row * rows_of_blocks).map(|_| OnceLock::new()).collect();
+        Self { heights, blocks, blocks_in_row, patches, corner, per_metre }
+    }
+
+    /// All of it but its heights.
+    pub(crate) fn parts(&self) -> SurfaceParts {
+        let (size, is_single) = (self.heights.size, self.heights.is_single());
+        SurfaceParts { size, is_single, corner: self.corner, per_metre: self.per_metre }
+    }
+
+    /// The heights as the bytes of their numbers.
+    pub(crate) fn height_bytes(&self) -> &[u8] {
+        self.heights.bytes()
+    }
+
+    /// A surface of its parts and the bytes of its heights.
+    pub(crate) fn of_parts(parts: SurfaceParts, heights: &[u8]) -> Result<Self, String> {
+        let SurfaceParts { size, is_single, corner, per_metre } = parts;
+        let heights = Heights::of_bytes(heights, size, is_single)
+            .ok_or("a terrain with another number of heights than it says")?;
+        Ok(Self::through(heights, corner, per_metre))
     }
 
     /// The block that holds a patch, and the index in it of the patch's south-west node.
@@ -169,6 +199,39 @@ impl Surface {
         self.between(pair(&nodes, 0), pair(&nodes, 2), place).0
     }
 
+    /// The heights that [`Self::height_and_slope`] gives at all of `x`, of which each goes with all of `y`; both ascend. Row by row,
+    /// a row for each `y`. No block is kept for it.
+    pub(crate) fn heights_on(&self, x: &[f64], y: &[f64]) -> Vec<f32> {
+        let mut heights = vec![0.0; x.len() * y.len()];
+        let columns: Vec<(usize, f64)> = x.iter().map(|x| self.column_at(*x)).collect();
+        let rows: Vec<(usize, f64)> = y.iter().map(|y| self.row_at(*y)).collect();
+        let mut bands = Vec::new();
+        let mut rest = &mut heights[..];
+        for rows in rows.chunk_by(|a, b| a.0 / SIDE == b.0 / SIDE) {
+            let (band, after) = rest.split_at_mut(rows.len() * x.len());
+            bands.push((rows, band));
+            rest = after;
+        }
+        bands.into_par_iter().for_each(|(rows, band)| self.fill_band(&columns, rows, band));
+        heights
+    }
+
+    /// Heights at rows and columns of places, all in one row of blocks.
+    fn fill_band(&self, columns: &[(usize, f64)], rows: &[(usize, f64)], band: &mut [f32]) {
+        let mut first = 0;
+        for part in columns.chunk_by(|a, b| a.0 / SIDE == b.0 / SIDE) {
+            let nodes = self.nodes_of_block(rows[0].0 / SIDE * self.blocks_in_row + part[0].0 / SIDE);
+            for ((row, v), line) in rows.iter().zip(band.chunks_exact_mut(columns.len())) {
+                for ((column, u), height) in part.iter().zip(&mut line[first..]) {
+                    let south = row % SIDE * STRIDE + column % SIDE;
+                    let (south, north) = (pair(&*nodes, south), pair(&*nodes, south + STRIDE));
+                    *height = self.between(south, north, [*u, *v]).0 as f32;
+                }
+            }
+            first += part.len();
+        }
+    }
+
     /// The height given at a node of the grid, counted from the south-west.
     pub(crate) fn height_of_node(&self, column: usize, row: usize) -> f64 {
         self.heights.at(column, row)
@@ -194,9 +257,18 @@ impl Surface {
     /// Column and row of the patch that holds a place, and where in it.
     #[inline(always)]
     fn patch_at(&self, x: f64, y: f64) -> ([usize; 2], [f64; 2]) {
-        let (column, u) = patch((x - self.corner[0]) * self.per_metre[0], self.patches[0]);
-        let (row, v) = patch((y - self.corner[1]) * self.per_metre[1], self.patches[1]);
+        let ((column, u), (row, v)) = (self.column_at(x), self.row_at(y));
         ([column, row], [u, v])
+    }
+
+    #[inline(always)]
+    fn column_at(&self, x: f64) -> (usize, f64) {
+        patch((x - self.corner[0]) * self.per_metre[0], self.patches[0])
+    }
+
+    #[inline(always)]
+    fn row_at(&self, y: f64) -> (usize, f64) {
+        patch((y - self.corner[1]) * self.per_metre[1], self.patches[1])
     }
 
     /// Height and slope in a patch from its south-west and south-east, north-west and north-east nodes.
@@ -366,6 +438,18 @@ mod tests {
             let (height, [east, north]) = surface.height_and_slope(x, y);
             assert!((height - plane(x, y)).abs() < 1e-12, "{x} {y} {height}");
             assert!((east - 0.25).abs() < 1e-12 && (north + 0.5).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn heights_on_a_grid_are_those_at_its_nodes_and_make_no_block() {
+        let ground = surface(150, 90, |x, y| (0.3 * x).sin() * (0.2 * y).cos());
+        let x: Vec<f64> = (0..211).map(|step| 95.0 + 1.5 * f64::from(step)).collect();
+        let y: Vec<f64> = (0..97).map(|step| -40.0 + 5.1 * f64::from(step)).collect();
+        let heights = ground.heights_on(&x, &y);
+        assert!(ground.blocks.iter().all(|block| block.get().is_none()));
+        for (index, height) in heights.iter().enumerate() {
+            assert_eq!(*height, ground.height_and_slope(x[index % 211], y[index / 211]).0 as f32);
         }
     }
 

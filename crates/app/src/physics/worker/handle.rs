@@ -5,6 +5,7 @@ use crate::physics::message::{FromWorker, ToWorker, bytes, message};
 use crate::physics::{Backend, Command, Event};
 use crate::snapshot::{Snapshot, Wake};
 use crate::view_state::ViewState;
+use crate::{Source, Start};
 use corpuscle::gpu::Gpu;
 use corpuscle::terrain::{in_memory, keep_in_memory};
 use std::cell::RefCell;
@@ -12,6 +13,7 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
+use std::sync::mpsc::Sender;
 use wasm_bindgen::prelude::*;
 use web_sys::js_sys::Uint8Array;
 use web_sys::{MessageEvent, Worker, WorkerOptions, WorkerType};
@@ -20,6 +22,14 @@ use web_sys::{MessageEvent, Worker, WorkerOptions, WorkerType};
 const SCRIPT: &str = "worker.js";
 const BROKEN: &str = "the scene was ended: it took more memory than a page has (4 GB), or an internal error stopped it. Open it again or make \
                       it smaller, or run it with the program (corpuscle view)";
+
+/// A flood over a file that the worker is asked to make a scene of.
+struct Flood {
+    /// The folder of the file.
+    folder: PathBuf,
+    /// Takes what is to be opened.
+    opens: Sender<Result<Start, String>>,
+}
 
 /// The handle of the worker. Dropping it ends the worker.
 pub struct Physics {
@@ -52,8 +62,12 @@ struct Received {
     newest: Option<Arc<Snapshot>>,
     /// What the worker is to be told.
     answers: Vec<ToWorker>,
+    /// Who waits for the scene of a flood over a file.
+    floods: VecDeque<Flood>,
     /// True once the worker broke down: it takes no more messages.
     is_broken: bool,
+    /// True while the worker opens a scene: it takes no message before that is done.
+    is_opening: bool,
 }
 
 impl Physics {
@@ -122,6 +136,21 @@ impl FileHolder {
         link.send(&ToWorker::File(path.clone(), bytes.to_vec()));
         link.held.push(path);
     }
+
+    /// Has the worker make a scene of a flood over the terrain in a file that it holds: the page would stand still meanwhile. What is to
+    /// be opened goes to `opens`.
+    pub fn flood(&self, path: PathBuf, opens: Sender<Result<Start, String>>) {
+        let mut link = self.0.borrow_mut();
+        if let Err(error) = link.replace_broken() {
+            // The receiver is gone when another file was dropped since.
+            let _ = opens.send(Err(error));
+            return;
+        }
+        // The folder tells which files its terrain needs.
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
+        link.received.borrow_mut().floods.push_back(Flood { folder, opens });
+        link.send(&ToWorker::Flood(path));
+    }
 }
 
 impl Drop for RunningWorker {
@@ -134,14 +163,16 @@ impl Drop for RunningWorker {
 }
 
 impl Link {
-    /// Sends a command; a scene is opened by a new worker where the one before broke down.
+    /// Sends a command; a scene is opened by a new worker where the one before broke down, or still opens another scene.
     fn command(&mut self, command: Command) {
+        let is_opened = matches!(command, Command::Open(..));
+        if is_opened && self.received.borrow().is_opening {
+            self.received.borrow_mut().broke();
+        }
         if self.received.borrow().is_broken {
             match command {
                 Command::Open(..) => {
-                    if let Err(error) = self.restart() {
-                        let what =
-                            format!("the browser starts no worker for the physics: {error:?}; load the page again");
+                    if let Err(what) = self.replace_broken() {
                         return self.received.borrow_mut().events.push_back(FromWorker::Broken(what));
                     }
                 }
@@ -151,7 +182,23 @@ impl Link {
                 _ => return,
             }
         }
+        if is_opened {
+            self.received.borrow_mut().is_opening = true;
+        }
         self.send(&ToWorker::Command(command));
+    }
+
+    /// Replaces a worker that broke down.
+    ///
+    /// # Errors
+    /// Why there is none, as text.
+    fn replace_broken(&mut self) -> Result<(), String> {
+        let is_broken = self.received.borrow().is_broken;
+        if is_broken {
+            let what = |error| format!("the browser starts no worker for the physics: {error:?}; load the page again");
+            self.restart().map_err(what)?;
+        }
+        Ok(())
     }
 
     /// Starts a new worker with the backend and the files of the one before.
@@ -226,8 +273,21 @@ impl Received {
                 self.newest = Some(Arc::new(snapshot));
                 self.answers.push(ToWorker::Taken);
             }
-            Ok(event) => self.events.push_back(event),
+            Ok(FromWorker::Flood(made)) => self.flooded(made),
+            Ok(event) => {
+                self.is_opening &= !matches!(event, FromWorker::Opened(_) | FromWorker::Refused(_));
+                self.events.push_back(event);
+            }
             Err(error) => self.events.push_back(FromWorker::Fault(error)),
+        }
+    }
+
+    /// Gives on what the worker has made of the file that has waited longest.
+    fn flooded(&mut self, made: Result<(String, String), String>) {
+        if let Some(Flood { folder, opens }) = self.floods.pop_front() {
+            let source = made.map(|(name, text)| Source { name, text, folder, changes: Vec::new() });
+            // The receiver is gone when another file was dropped since.
+            let _ = opens.send(source.map(Start::Scene));
         }
     }
 
@@ -235,6 +295,9 @@ impl Received {
     fn broke(&mut self) {
         if !self.is_broken {
             self.is_broken = true;
+            while !self.floods.is_empty() {
+                self.flooded(Err(BROKEN.into()));
+            }
             self.events.push_back(FromWorker::Broken(BROKEN.into()));
         }
     }
@@ -252,6 +315,6 @@ fn event(message: FromWorker) -> Option<Event> {
         FromWorker::Ended => Event::Ended,
         FromWorker::Fault(what) => Event::Fault(what),
         FromWorker::Broken(what) => Event::Broken(what),
-        FromWorker::Snapshot(_) => return None,
+        FromWorker::Snapshot(_) | FromWorker::Flood(_) => return None,
     })
 }

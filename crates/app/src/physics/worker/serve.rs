@@ -4,10 +4,12 @@ use crate::physics::message::{FromWorker, ToWorker, bytes, message};
 use crate::physics::runner::Runner;
 use crate::physics::{Backend, Event, Shared};
 use crate::snapshot::Snapshot;
+use crate::{Source, dropped};
 use corpuscle::Cpu;
 use corpuscle::terrain::{hold_in_memory, keep_in_memory};
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -110,6 +112,7 @@ impl Server {
                 let message = server.state.borrow_mut().messages.pop_front();
                 server.shared.stop.store(false, Ordering::Relaxed);
                 match message {
+                    Some(ToWorker::Flood(path)) => server.post(&FromWorker::Flood(flood(&path))),
                     Some(message) => take(&mut runner, message).await,
                     None => break,
                 }
@@ -171,6 +174,11 @@ impl Server {
     }
 }
 
+/// Name and text of the scene of a flood over the terrain in a file.
+fn flood(path: &Path) -> Result<(String, String), String> {
+    dropped::flood(path).map(|Source { name, text, .. }| (name, text))
+}
+
 /// Does what a message says.
 async fn take(runner: &mut Runner, message: ToWorker) {
     match message {
@@ -178,6 +186,6 @@ async fn take(runner: &mut Runner, message: ToWorker) {
         ToWorker::Command(command) => runner.take(command).await,
         ToWorker::File(path, bytes) => hold_in_memory(path, &bytes),
         ToWorker::KeepFiles(folder) => keep_in_memory(&folder),
-        ToWorker::Taken => {}
+        ToWorker::Taken | ToWorker::Flood(_) => {}
     }
 }

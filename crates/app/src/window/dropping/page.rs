@@ -2,7 +2,7 @@
 
 use super::{Pending, Window};
 use crate::physics::FileHolder;
-use crate::{Source, Start, dropped};
+use crate::{Source, Start};
 use corpuscle::terrain::hold_in_memory;
 use egui::{Context, DroppedFile, DroppedFileHandle, Ui};
 use send_wrapper::SendWrapper;
@@ -22,9 +22,6 @@ const FOLDER: &str = "/dropped";
 
 /// Largest file that is read, bytes: it is in memory twice, as is the terrain in it, and a page has 4 GB.
 const MOST: usize = 512 << 20;
-
-/// Endings of meshes, which are read from the disk only.
-const MESHES: [&str; 5] = ["gltf", "glb", "obj", "ply", "stl"];
 
 /// Files that the user chose by the button, for a device that drops none.
 #[derive(Default)]
@@ -111,8 +108,12 @@ impl Window {
         let (sender, receiver) = channel();
         let (context, files, holder) = (context.clone(), files.to_vec(), self.physics.holder());
         spawn_local(async move {
-            // The receiver is gone when another file was dropped since.
-            let _ = sender.send(read(&files, &folder, &holder).await);
+            match read(&files, &folder, &holder).await {
+                Ok(Dropped::Terrain(path)) => holder.flood(path, sender),
+                // The receiver is gone when another file was dropped since.
+                Ok(Dropped::Scene(source)) => drop(sender.send(Ok(Start::Scene(source)))),
+                Err(error) => drop(sender.send(Err(error))),
+            }
             context.request_repaint();
         });
         self.pending = Some(Pending::Dropped(receiver));
@@ -124,31 +125,36 @@ impl Window {
     }
 }
 
+/// What dropped files open.
+enum Dropped {
+    Scene(Source),
+    /// Terrain to be flooded, by its path in memory.
+    Terrain(PathBuf),
+}
+
 /// Reads dropped files into a folder in memory; gives what they open.
-async fn read(files: &[DroppedFileHandle], folder: &Path, holder: &FileHolder) -> Result<Start, String> {
+async fn read(files: &[DroppedFileHandle], folder: &Path, holder: &FileHolder) -> Result<Dropped, String> {
     let is_scene = |file: &&DroppedFileHandle| has_ending(file.path(), &["toml"]);
     let main = files.iter().find(is_scene).or(files.first()).ok_or("nothing was dropped")?;
-    let mut opened = None;
+    let mut text = None;
     for file in files {
         check(file)?;
         let bytes = file.bytes_async().await.map_err(|error| format!("{}: {error}", file.path().display()))?;
         let path = folder.join(file.path());
         holder.hold(path.clone(), &bytes);
-        hold_in_memory(path.clone(), &bytes);
-        if std::ptr::eq(file, main) {
-            opened = Some((path, bytes));
+        hold_in_memory(path, &bytes);
+        if std::ptr::eq(file, main) && is_scene(&file) {
+            text = Some(String::from_utf8(bytes).map_err(|error| format!("{}: {error}", file.path().display()))?);
         }
     }
-    let (path, bytes) = opened.ok_or("nothing was dropped")?;
-    open(path, bytes)
+    let Some(text) = text else { return Ok(Dropped::Terrain(folder.join(main.path()))) };
+    let name = main.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Dropped::Scene(Source { name, text, folder: folder.to_owned(), changes: Vec::new() }))
 }
 
 /// Refuses what a page does not read, before it is read.
 fn check(file: &DroppedFileHandle) -> Result<(), String> {
     let name = file.path().display();
-    if has_ending(file.path(), &MESHES) {
-        return Err(format!("{name}: a page reads no meshes; open the scene with the program (`corpuscle view`)"));
-    }
     if file.web_file().is_some_and(|file| file.size() > MOST as f64) {
         return Err(format!(
             "{name}: a page reads files of at most {} MB; make it smaller (`corpuscle terrain clip`), or open it with the program \
@@ -161,18 +167,4 @@ fn check(file: &DroppedFileHandle) -> Result<(), String> {
 
 fn has_ending(path: &Path, endings: &[&str]) -> bool {
     path.extension().is_some_and(|ending| endings.iter().any(|one| ending.eq_ignore_ascii_case(one)))
-}
-
-fn open(path: PathBuf, bytes: Vec<u8>) -> Result<Start, String> {
-    let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
-    if !has_ending(&path, &["toml"]) {
-        // The folder tells which files its terrain needs.
-        return Ok(match dropped::open(&path)? {
-            Start::Scene(source) => Start::Scene(Source { folder, ..source }),
-            other => other,
-        });
-    }
-    let text = String::from_utf8(bytes).map_err(|error| format!("{}: {error}", path.display()))?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Start::Scene(Source { name, text, folder, changes: Vec::new() }))
 }

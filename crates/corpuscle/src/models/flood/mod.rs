@@ -104,7 +104,8 @@ impl ModelKind for Kind {
     ) -> Result<Box<dyn Subject>, Error> {
         let FloodScene { flood, .. } = scenery.scene().flood().ok_or_else(no_flood)?;
         let terrain = scenery.terrain().ok_or_else(no_flood)?;
-        Ok(Box::new(FloodPicture::new(context, flood, terrain, settings)?))
+        let drawn = scenery.drawn_heights().ok_or_else(no_flood)?;
+        Ok(Box::new(FloodPicture::new(context, flood, terrain, drawn, settings)?))
     }
 }
 
