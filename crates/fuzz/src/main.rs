@@ -192,9 +192,9 @@ fn try_file(name: &str, file: &Path) -> Result<bool, String> {
 }
 
 fn run_soak(hours: f64, seed: u64, log: &Path) -> Result<bool, String> {
-    let gpu = Gpu::open().map_err(|error| println!("without a GPU: {error}")).ok();
+    let open = || Gpu::open().map_err(|error| println!("without a GPU: {error}")).ok();
     let time = Duration::from_secs_f64(3600.0 * hours);
-    let rows = soak(time, seed, 100, log, gpu.as_ref()).map_err(|error| error.to_string())?;
+    let rows = soak(time, seed, 100, log, open).map_err(|error| error.to_string())?;
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Err("too short a time".into()) };
     println!("{} scenes; first row {first:?}; last row {last:?}", last.scenes);
     let growth = growth(&rows);

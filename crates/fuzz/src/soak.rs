@@ -35,6 +35,10 @@ pub struct Use {
 /// Longest time of a scene.
 const LONGEST: Duration = Duration::from_secs(5);
 
+/// Scenes that share a device. A driver may keep all programs that it has compiled until the device is closed, as Mesa's does: other
+/// scenes ask for other ones.
+const SCENES_A_DEVICE: u64 = 25;
+
 /// Resident memory may rise by this over the first half of the time, KiB: what the allocator keeps differs from scene to scene.
 const SPREAD_KIB: u64 = 50 * 1024;
 
@@ -62,28 +66,39 @@ fn gpu_kib(gpu: &Gpu) -> u64 {
     gpu.device.generate_allocator_report().map_or(0, |report| report.total_allocated_bytes / 1024)
 }
 
-/// Runs scenes for a time, each recorded in a folder, interrupted and resumed; a row of the log for each of `rows` equal parts of the time. With a GPU every
-/// second round of scenes takes its steps on it, what it can compute, and a picture of each is drawn.
+/// Runs scenes for a time, each recorded in a folder, interrupted and resumed; a row of the log for each of `rows` equal parts of the time. With a GPU, which
+/// `open` opens, every second round of scenes takes its steps on it, what it can compute, and a picture of each is drawn.
 ///
 /// # Errors
 /// Where the system does not say what this process uses, or a file cannot be written.
-pub fn soak(time: Duration, seed: u64, rows: u32, log: &Path, gpu: Option<&Gpu>) -> std::io::Result<Vec<Use>> {
+pub fn soak(
+    time: Duration,
+    seed: u64,
+    rows: u32,
+    log: &Path,
+    open: impl Fn() -> Option<Gpu>,
+) -> std::io::Result<Vec<Use>> {
     let start = Instant::now();
     let folder = scratch()?;
     let mut file = fs::File::create(log)?;
     writeln!(file, "time_s\tscenes\tresident_kib\tfiles\tthreads\tgpu_kib")?;
     let (mut rows_of, mut scenes) = (Vec::new(), 0);
+    let mut gpu = open();
     while start.elapsed() < time {
+        if scenes % SCENES_A_DEVICE == SCENES_A_DEVICE - 1 && gpu.is_some() {
+            drop(gpu);
+            gpu = open();
+        }
         let (_, kind) = Kind::ALL[(scenes % Kind::ALL.len() as u64) as usize];
         let (text, _) = scene(kind, seed + scenes, &[]);
         let are_steps_there = scenes / Kind::ALL.len() as u64 % 2 == 1;
-        if let Err(error) = run(&text, &folder.path().join("run"), gpu, are_steps_there) {
+        if let Err(error) = run(&text, &folder.path().join("run"), gpu.as_ref(), are_steps_there) {
             eprintln!("{kind:?}, seed {}: {error}", seed + scenes);
         }
         _ = fs::remove_dir_all(folder.path().join("run"));
         scenes += 1;
         if start.elapsed() >= (rows_of.len() as u32 + 1) * time / rows {
-            let row = Use::now(start, scenes, gpu)?;
+            let row = Use::now(start, scenes, gpu.as_ref())?;
             let Use { time_s, scenes, resident_kib, files, threads, gpu_kib } = row;
             writeln!(file, "{time_s:.0}\t{scenes}\t{resident_kib}\t{files}\t{threads}\t{gpu_kib}")?;
             rows_of.push(row);
