@@ -2,10 +2,12 @@
 
 mod common;
 
-use common::{scene, sph_swe};
+use common::{scene, sph_swe, terrain};
 use corpuscle_flood::SphSweFlood;
 use corpuscle_model::Model;
 use corpuscle_scene::FloodScene;
+use std::f64::consts::PI;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 const RIVER: &str = r#"
@@ -44,6 +46,27 @@ fn river(change: impl FnOnce(&mut FloodScene)) -> SphSweFlood {
     let mut scene = scene(RIVER);
     change(&mut scene);
     sph_swe(&scene)
+}
+
+/// With half the smoothing length that is needed depths reached 1e97 m within 2 s.
+#[test]
+fn a_smoothing_length_with_which_a_particle_alone_gets_ever_deeper_is_refused() {
+    for (kernel, least) in [
+        ("mueller", (4.0 / PI).sqrt()),
+        ("cubic-spline", (40.0 / (7.0 * PI)).sqrt()),
+        ("wendland-c2", (7.0 / PI).sqrt()),
+    ] {
+        let volume: f64 = 36.0;
+        let open = |factor: f64| {
+            let length = factor * least * volume.sqrt();
+            let sets = format!("\n[flood.sph_swe]\nkernel = \"{kernel}\"\nsmoothing_length_m = {length}\n");
+            let scene = scene(&format!("{RIVER}{sets}"));
+            SphSweFlood::new(&scene.flood, 1, Path::new("."), terrain(&scene))
+        };
+        let error = open(0.999).map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains("smoothing_length_m") && error.contains("15.96"), "{error}");
+        assert!(open(1.001).is_ok(), "{kernel}");
+    }
 }
 
 fn go(flood: &mut SphSweFlood, time: f64) {

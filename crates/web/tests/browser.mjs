@@ -651,6 +651,20 @@ test("the start page has a live picture of each model", { timeout: 240_000 }, as
   await stage.close();
 });
 
+test("pages of the first hour have at most two screens", { timeout: 60_000 }, async () => {
+  const stage = await Stage.open(browser, `${address}/guide/introduction.html`, { width: 1920, height: 1080 });
+  // Those of the first part of the list at the left.
+  const first = await stage.page.locator(".guide nav h1:not(:first-child) + ul").first().locator("a").evaluateAll((links) => links.map((link) => link.href));
+  assert.ok(first.length >= 8, first.join());
+  for (const page of [stage.page.url(), ...first]) {
+    await stage.page.goto(page);
+    await stage.page.evaluate(() => Promise.all([...document.images].map((image) => image.decode())));
+    const height = await stage.page.evaluate(() => document.documentElement.scrollHeight);
+    assert.ok(height <= 2 * 1080, `${page}: ${height} pixels`);
+  }
+  await stage.close();
+});
+
 test("the guide is searched", { timeout: 60_000 }, async () => {
   const stage = await Stage.open(browser, `${address}/guide/introduction.html`);
   const { page } = stage;

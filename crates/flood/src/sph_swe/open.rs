@@ -14,8 +14,8 @@ use crate::friction::Roughness;
 use crate::setup::{self, InitialWater};
 use crate::{fields, limits, obstacles, spacing};
 use corpuscle_model::{Account, CompensatedSum, ModelError};
-use corpuscle_scene::{Block, Edge, Flood as Settings, Scheme, SmoothingForm};
-use corpuscle_sph::kernel::Kernel;
+use corpuscle_scene::{Block, Edge, Flood as Settings, Scheme, SmoothingForm, SphSwe as Parameters};
+use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 use corpuscle_terrain::Terrain;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -92,6 +92,7 @@ impl SphSweFlood {
         let volume = spacing * spacing * depth;
         // Neighbours in the reach: pi h0^2 rho0 / m, whatever the depth. Table 1 has particles of 1 m3.
         let h = *flood.sph_swe.smoothing_length_m.get_or_insert(TABLE_1_SMOOTHING * volume.sqrt());
+        check_smoothing(&flood.sph_swe, h, volume)?;
         flood.sph_swe.radius_m.get_or_insert(0.5 * spacing);
         limits::check_blocks(flood, &terrain)?;
         limits::check_count(flood, bodies, &terrain, spacing, volume)?;
@@ -251,4 +252,20 @@ fn edge_rules(scene: &Settings, terrain: &Terrain) -> Result<EdgeRules, ModelErr
     let edges = &scene.edges;
     let rules = [rule(&edges.west)?, rule(&edges.east)?, rule(&edges.south)?, rule(&edges.north)?];
     Ok(EdgeRules { bounds: terrain.bounds(), rules })
+}
+
+/// Refuses an initial smoothing length, m, with which a particle's weight of itself, m W(0, h), is more than its density: with
+/// `smoothing = "density"` h would be shorter in the next step, that weight larger, and so on without end.
+fn check_smoothing(parameters: &Parameters, h: f64, volume: f64) -> Result<(), ModelError> {
+    // The depth that a particle alone has where its smoothing length is h, which goes with a depth of 1 m.
+    let own_depth = volume * Kernel::<2>::new(parameters.kernel, h).value(0.0);
+    if own_depth < 1.0 || parameters.smoothing != SmoothingForm::Density {
+        return Ok(());
+    }
+    Err(setup::setup(format!(
+        "flood.sph_swe.smoothing_length_m = {h} is so short for particles of {volume:.4} m3 that one alone would get deeper with each step; \
+         give more than {:.4} ({:.4} gives as many neighbours as the paper has)",
+        h * own_depth.sqrt(),
+        TABLE_1_SMOOTHING * volume.sqrt(),
+    )))
 }

@@ -35,6 +35,8 @@ pub(super) fn scene(maker: &mut Maker<'_>, is_sph_swe: bool) -> String {
             obstacle: flood.obstacle.into_iter().filter(|obstacle| obstacle.line.is_none()).collect(),
             ..flood
         };
+        let volume = flood.spacing_m.unwrap_or(1.0).powi(2) * flood.spacing_depth_m.unwrap_or(1.0);
+        flood.sph_swe.smoothing_length_m = maker.maybe(0.3, |maker| maker.between(1.7, 4.0) * volume.sqrt());
     }
     super::text(maker, until, &[("terrain", &terrain), ("flood", &flood)])
 }
@@ -219,7 +221,7 @@ fn finer(maker: &mut Maker<'_>, spacing: f64, has_obstacles: bool) -> Vec<Finer>
 fn sph_swe(maker: &mut Maker<'_>) -> SphSwe {
     SphSwe {
         time_step_s: 0.02,
-        // One that does not go with the distance of particles may end in absurd depths: open/sph-swe-smoothing-length.toml.
+        // By the volume of the particles, once that is known.
         smoothing_length_m: None,
         smoothing: if maker.has(0.3) { SmoothingForm::Rate } else { SmoothingForm::Density },
         kernel: maker.one_of(&[KernelName::Mueller, KernelName::CubicSpline, KernelName::WendlandC2]),
