@@ -3,7 +3,7 @@
 use crate::models::{self, Recorded};
 use crate::{Error, Simulation, Sink};
 use corpuscle_model::Model;
-use corpuscle_output::{Clock, FrameFormat, RunFolder, Status, Summary};
+use corpuscle_output::{Clock, FrameFormat, MAP_OVER_TIME, RunFolder, Status, Summary};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -81,7 +81,11 @@ impl Sink for Recorder {
             self.folder.write_frame(&model.frame(), model.container().as_ref())?;
         }
         if let Some(terrain) = &self.terrain {
-            self.folder.write_snapshot(model.time(), &model.maps(), terrain)?;
+            let (folder, mut written) = (&mut self.folder, Ok(()));
+            model.each_map(&|name| name == MAP_OVER_TIME, &mut |map| {
+                written = folder.write_snapshot(model.time(), &[map], terrain);
+            });
+            written?;
         }
         models::of(&self.scene)?.record_frame(&self.recorded(model))
     }
@@ -93,10 +97,13 @@ impl Sink for Recorder {
     fn finish(&mut self, model: &dyn Model, summary: &mut Summary) -> Result<(), Error> {
         let kind = models::of(&self.scene)?;
         if let Some(terrain) = &self.terrain {
-            let maps = model.maps();
-            if !maps.is_empty() {
-                self.folder.write_final_maps(&maps, terrain)?;
-            }
+            let (folder, mut written) = (&self.folder, Ok(()));
+            model.each_map(&|name| name != MAP_OVER_TIME, &mut |map| {
+                if written.is_ok() {
+                    written = folder.write_final_maps(&[map], terrain);
+                }
+            });
+            written?;
         }
         kind.complete(&self.recorded(model), summary)?;
         for warning in &summary.warnings {

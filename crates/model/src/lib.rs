@@ -144,6 +144,11 @@ pub trait Model: Any + Send {
     /// Fields over the model's own map grid, as they stand now. Empty for a model without maps.
     fn maps(&self) -> Vec<Map>;
 
+    /// Gives those of the [`Model::maps`] whose names `is_wanted` to `take`, one after another, so that not all of them need be in memory.
+    fn each_map(&self, is_wanted: &dyn Fn(&str) -> bool, take: &mut dyn FnMut(Map)) {
+        self.maps().into_iter().filter(|map| is_wanted(map.name)).for_each(take);
+    }
+
     /// What was measured up to the time shown, as charts. Empty for a model without charts.
     fn charts(&self) -> Vec<Chart> {
         Vec::new()

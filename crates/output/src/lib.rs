@@ -29,7 +29,7 @@ pub use extent::{ExtentScores, compare_extent, write_extent, write_run_up};
 pub use frames::{FrameFiles, FrameFormat, write_extended_xyz};
 pub use gauge_chart::gauge_chart;
 pub use gauges::GaugeTable;
-pub use maps::MapFiles;
+pub use maps::{MAP_OVER_TIME, MapFiles};
 pub use picture::Key as GasKey;
 pub use report::{
     DewReport, EnsembleMap, EnsembleReport, EnsembleTable, GasReport, PlainReport, Report, ValidatedCase,

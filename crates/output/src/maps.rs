@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 const NO_DATA: f32 = -9999.0;
 
 /// The map that is written for each frame; of the others only the last, which covers the whole run.
-pub(crate) const SNAPSHOT: &str = "depth";
+pub const MAP_OVER_TIME: &str = "depth";
 
 /// Writes a map (not-a-number where there is nothing).
 pub(crate) fn write_map(path: &Path, grid: &MapGrid, values: &[f32]) -> Result<(), OutputError> {
@@ -86,7 +86,7 @@ impl MapFiles {
 
     /// Name of the map of single times.
     pub fn name_over_time(&self) -> &'static str {
-        SNAPSHOT
+        MAP_OVER_TIME
     }
 
     /// Grid on which all of them are.
@@ -139,7 +139,7 @@ fn names_in(folder: &Path) -> Result<Vec<String>, OutputError> {
         entries => entries.map_err(OutputError::read(folder))?,
     };
     let name = |entry: fs::DirEntry| entry.file_name().to_str()?.strip_suffix(".tif").map(str::to_owned);
-    let number_in = |name: &String| name.strip_prefix(SNAPSHOT)?.strip_prefix('_')?.parse::<usize>().ok();
+    let number_in = |name: &String| name.strip_prefix(MAP_OVER_TIME)?.strip_prefix('_')?.parse::<usize>().ok();
     let is_snapshot = |name: &String| number_in(name).is_some();
     let mut names: Vec<String> = entries.flatten().filter_map(name).filter(|name| !is_snapshot(name)).collect();
     names.sort();
@@ -151,7 +151,7 @@ pub(crate) const TIMES: &str = "times.csv";
 
 /// File of the depth map of a frame.
 pub(crate) fn snapshot_path(folder: &Path, index: usize) -> PathBuf {
-    folder.join(format!("{SNAPSHOT}_{index:06}.tif"))
+    folder.join(format!("{MAP_OVER_TIME}_{index:06}.tif"))
 }
 
 /// Writes [`TIMES`]: which depth map shows which time.
@@ -161,7 +161,7 @@ pub(crate) fn write_times(folder: &Path, times: &[f64]) -> Result<(), OutputErro
         times
             .iter()
             .enumerate()
-            .try_for_each(|(index, time)| writeln!(file, "{SNAPSHOT}_{index:06}.tif,{}", Shortest(*time)))
+            .try_for_each(|(index, time)| writeln!(file, "{MAP_OVER_TIME}_{index:06}.tif,{}", Shortest(*time)))
     })
 }
 

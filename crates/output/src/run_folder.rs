@@ -5,7 +5,7 @@ use crate::checkpoint::{Progress, checksum};
 use crate::finite::{check_frame, check_map, check_surface};
 use crate::frames::{FrameFormat, write_pvd, write_surface};
 use crate::gauges::GaugeWriter;
-use crate::maps::{self, SNAPSHOT};
+use crate::maps::{self, MAP_OVER_TIME};
 use crate::whole::{write_bytes, write_whole};
 use crate::{Clock, OutputError, Summary, write_extent, write_run_up};
 use corpuscle_atomic_file::clear_unfinished;
@@ -168,7 +168,7 @@ impl RunFolder {
     /// # Errors
     /// [`OutputError::Write`]; [`OutputError::NotFinite`].
     pub fn write_snapshot(&mut self, time: f64, maps: &[Map], terrain: &Terrain) -> Result<(), OutputError> {
-        let Some(map) = maps.iter().find(|map| map.name == SNAPSHOT) else { return Ok(()) };
+        let Some(map) = maps.iter().find(|map| map.name == MAP_OVER_TIME) else { return Ok(()) };
         check_map(map)?;
         let folder = self.subfolder("maps")?;
         maps::write_map(&maps::snapshot_path(&folder, self.map_times.len()), terrain.map_grid(), &map.values)?;
@@ -184,7 +184,7 @@ impl RunFolder {
     pub fn write_final_maps(&self, maps: &[Map], terrain: &Terrain) -> Result<(), OutputError> {
         maps.iter().try_for_each(check_map)?;
         let folder = self.subfolder("maps")?;
-        for map in maps.iter().filter(|map| map.name != SNAPSHOT) {
+        for map in maps.iter().filter(|map| map.name != MAP_OVER_TIME) {
             maps::write_map(&folder.join(format!("{}.tif", map.name)), terrain.map_grid(), &map.values)?;
         }
         match maps.iter().find(|map| map.name == "max_depth") {

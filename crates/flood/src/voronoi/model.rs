@@ -170,14 +170,23 @@ impl Model for VoronoiFlood {
     }
 
     fn maps(&self) -> Vec<Map> {
+        let mut maps = Vec::new();
+        self.each_map(&|_| true, &mut |map| maps.push(map));
+        maps
+    }
+
+    fn each_map(&self, is_wanted: &dyn Fn(&str) -> bool, take: &mut dyn FnMut(Map)) {
         self.broadcast(&Command::Maps);
         let water = |cell: usize| self.water_shown(cell);
         let mesh = &self.solver.mesh;
         let domain = self.solver.domain.as_ref();
-        let mut maps = maps::maps(mesh, &self.terrain, &self.state.records, &water, self.settings.wet_depth_m, domain);
+        let wet = maps::wet(mesh, &self.terrain, &self.state.records, &water, self.settings.wet_depth_m, domain);
+        if let Some(wet) = wet {
+            wet.each_map(is_wanted, take);
+        }
         let soaked = &self.state.soaked;
-        maps.extend(self.weather.as_ref().and_then(|weather| weather.map(mesh, &self.terrain, soaked, domain)));
-        maps
+        let soaked = self.weather.as_ref().and_then(|weather| weather.map(mesh, &self.terrain, soaked, domain));
+        soaked.into_iter().filter(|map| is_wanted(map.name)).for_each(take);
     }
 
     fn ledger(&self) -> Ledger {

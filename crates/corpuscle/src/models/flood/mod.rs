@@ -71,10 +71,11 @@ impl ModelKind for Kind {
     fn complete(&self, run: &Recorded<'_>, summary: &mut Summary) -> Result<(), Error> {
         let observed = run.scene.flood().and_then(|scene| scene.flood.observed_extent.as_ref());
         let (Some(observed), Some(terrain)) = (observed, run.terrain) else { return Ok(()) };
-        if let Some(depth) = run.model.maps().iter().find(|map| map.name == "max_depth") {
-            summary.extent = Some(compare_extent(observed, terrain, &depth.values)?);
-        }
-        Ok(())
+        let mut compared = Ok(());
+        run.model.each_map(&|name| name == "max_depth", &mut |map| {
+            compared = compare_extent(observed, terrain, &map.values).map(|extent| summary.extent = Some(extent));
+        });
+        Ok(compared?)
     }
 
     fn write_report(&self, run: &Recorded<'_>) -> Result<(), Error> {

@@ -78,15 +78,35 @@ impl Record {
     }
 }
 
-/// The maps as they stand, with the water now given by `water`; of several processes at the first, none at others.
-pub(crate) fn maps(
+/// What the maps show at the pixels that were ever wet: they take memory one by one.
+pub(crate) struct Wet {
+    /// Columns and rows.
+    size: [usize; 2],
+    /// Pixels, each with its value in each of the maps.
+    pixels: Vec<(usize, [f32; NAMES.len()])>,
+}
+
+impl Wet {
+    /// The maps whose names are wanted, one after another.
+    pub fn each_map(&self, is_wanted: &dyn Fn(&str) -> bool, take: &mut dyn FnMut(Map)) {
+        let [columns, rows] = self.size;
+        for (k, [name, title, unit]) in NAMES.into_iter().enumerate().filter(|(_, [name, ..])| is_wanted(name)) {
+            let mut values = vec![f32::NAN; columns * rows];
+            self.pixels.iter().for_each(|(pixel, of_pixel)| values[*pixel] = of_pixel[k]);
+            take(Map { name, title, unit, columns, rows, values });
+        }
+    }
+}
+
+/// What the maps show as they stand, with the water now given by `water`; of several processes at the first, none at others.
+pub(crate) fn wet(
     mesh: &Mesh,
     terrain: &Terrain,
     records: &[Record],
     water: &(impl Fn(usize) -> Water + Sync),
     wet_depth: f64,
     domain: Option<&Domain>,
-) -> Vec<Map> {
+) -> Option<Wet> {
     let grid = terrain.map_grid();
     let (columns, rows) = (grid.columns, grid.rows);
     let highest = |cell: usize| {
@@ -124,17 +144,8 @@ pub(crate) fn maps(
         Some((row * columns + column, values))
     };
     let of_row = |row: usize| (0..columns).filter_map(|column| pixel(column, row)).collect::<Vec<_>>();
-    // Only what was wet takes memory until the maps are made.
     let pixels: Vec<(usize, [f32; NAMES.len()])> = (0..rows).into_par_iter().flat_map_iter(of_row).collect();
-    let Some(pixels) = Domain::gathered(domain, pixels) else { return Vec::new() };
-    let of = |k: usize| {
-        let mut values = vec![f32::NAN; columns * rows];
-        pixels.iter().for_each(|(pixel, of_pixel)| values[*pixel] = of_pixel[k]);
-        values
-    };
-    let map =
-        |(k, [name, title, unit]): (usize, &[&'static str; 3])| Map { name, title, unit, columns, rows, values: of(k) };
-    NAMES.iter().enumerate().map(map).collect()
+    Domain::gathered(domain, pixels).map(|pixels| Wet { size: [columns, rows], pixels })
 }
 
 /// Name, title and unit of the maps.
