@@ -41,4 +41,4 @@ pub use snapshot::{Measures, Snapshot, Wake};
 #[cfg(not(target_arch = "wasm32"))]
 pub use view::{ViewError, view};
 pub use view_state::ViewState;
-pub use window::{Source, Start, Window};
+pub use window::{Embedded, Source, Start, Window};

@@ -527,6 +527,12 @@ onPage("a page within another has no panels", "?embed#gas/maxwell", async (stage
   await stage.shot("embedded");
 }, { width: 640, height: 480 });
 
+onPage("a picture within another page fills it", "?embed=picture#gas/maxwell", async (stage) => {
+  await stage.until("it plays", (state) => state.time > 1);
+  const picture = await stage.box("img", "Picture of the scene");
+  assert.deepEqual([picture.width, picture.height], [640, 480]);
+}, { width: 640, height: 480 });
+
 // Runs in the page: keeps the device that the page is given, so that a test can take it away.
 function keepDevice() {
   const request = GPUAdapter.prototype.requestDevice;

@@ -5,7 +5,7 @@ mod loss;
 
 use crate::meter::Meter;
 use crate::physics::Backend;
-use crate::{Measurement, Meshes, Screen, Start, Window, link};
+use crate::{Embedded, Measurement, Meshes, Screen, Start, Window, link};
 use corpuscle::gpu::{Gpu, wgpu};
 use eframe::Renderer;
 use egui_wgpu::{WgpuSetup, WgpuSetupCreateNew};
@@ -20,8 +20,8 @@ pub struct Page(eframe::WebRunner);
 
 /// What the address of a page says beside the scene: words after `?`.
 struct Words {
-    /// `embed`: the picture and its controls alone.
-    is_embedded: bool,
+    /// `embed`: the picture and the strip below it alone; `embed=picture`: without the strip.
+    embedded: Option<Embedded>,
     /// `measure=SECONDS`: pictures are counted.
     measure: Option<f64>,
     /// `speed=TIMES`: the pace of scenes, over their own.
@@ -40,7 +40,12 @@ impl Words {
             Some("gpu") => Backend::Gpu,
             _ => Backend::Auto,
         };
-        Self { is_embedded: words.contains(&"embed"), measure, speed, backend }
+        let embedded = words.iter().find_map(|word| match *word {
+            "embed" => Some(Embedded { has_strip: true }),
+            "embed=picture" => Some(Embedded { has_strip: false }),
+            _ => None,
+        });
+        Self { embedded, measure, speed, backend }
     }
 }
 
@@ -114,8 +119,8 @@ impl App {
         } else if loss::take_note() {
             window.notify("The graphics device was lost: the scene was opened again.".into());
         }
-        if words.is_embedded {
-            window.embed();
+        if let Some(embedded) = words.embedded {
+            window.embed(embedded);
         }
         if let Some(speed) = words.speed {
             window.set_speed(speed);

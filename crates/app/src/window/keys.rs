@@ -27,7 +27,7 @@ impl Window {
             (Key::L, |panels| &mut panels.plots),
         ];
         // Within another page the picture stays alone.
-        for (key, panel) in panels.into_iter().filter(|_| !self.is_embedded) {
+        for (key, panel) in panels.into_iter().filter(|_| self.embedded.is_none()) {
             if pressed(key) {
                 self.panels.toggle(panel, self.is_narrow);
             }

@@ -58,12 +58,19 @@ pub struct Window {
     speed: f64,
     /// Whether a scene plays as soon as it is open.
     plays: bool,
-    /// True where the picture and its controls are shown alone.
-    is_embedded: bool,
+    /// How the picture is shown alone, where it is.
+    embedded: Option<Embedded>,
     /// True where the window is narrow.
     is_narrow: bool,
     /// Files that were chosen to be opened.
     chosen: ChosenFiles,
+}
+
+/// A picture that is shown alone.
+#[derive(Debug, Clone, Copy)]
+pub struct Embedded {
+    /// Whether the strip with play, step, speed and time is shown below it.
+    pub has_strip: bool,
 }
 
 /// A scene or run being opened.
@@ -149,7 +156,7 @@ impl Window {
             folder: PathBuf::from("."),
             speed: 1.0,
             plays: true,
-            is_embedded: false,
+            embedded: None,
             is_narrow: false,
             chosen: ChosenFiles::default(),
         };
@@ -260,9 +267,9 @@ impl Window {
         self.notice = Some((what, Instant::now()));
     }
 
-    /// Shows the picture with its controls alone, as within another page.
-    pub fn embed(&mut self) {
-        self.is_embedded = true;
+    /// Shows the picture alone, as within another page.
+    pub fn embed(&mut self, embedded: Embedded) {
+        self.embedded = Some(embedded);
         self.panels = Panels { scenes: false, parameters: false, plots: false };
     }
 
@@ -347,7 +354,7 @@ impl Window {
     fn fit(&mut self, ui: &Ui) {
         let is_narrow = ui.max_rect().width() < NARROW;
         if is_narrow && !self.is_narrow {
-            self.panels = Panels { scenes: false, parameters: false, plots: !self.is_embedded };
+            self.panels = Panels { scenes: false, parameters: false, plots: self.embedded.is_none() };
         }
         self.is_narrow = is_narrow;
     }
@@ -370,9 +377,11 @@ impl Window {
             return self.first_page(ui);
         }
         let strip = Frame::new().inner_margin(Margin::symmetric(12, 6));
-        let pressed =
-            Panel::bottom("strip").frame(strip).exact_size(52.0).show(ui, |ui| self.strip(ui, pictures)).inner;
-        if !self.is_embedded {
+        let has_strip = self.embedded.is_none_or(|embedded| embedded.has_strip);
+        let mut show_strip =
+            || Panel::bottom("strip").frame(strip).exact_size(52.0).show(ui, |ui| self.strip(ui, pictures)).inner;
+        let pressed = has_strip.then(&mut show_strip).flatten();
+        if self.embedded.is_none() {
             let bar = Frame::new().inner_margin(Margin::symmetric(10, 5));
             Panel::top("bar").frame(bar).exact_size(44.0).show(ui, |ui| ui.horizontal_centered(|ui| self.toolbar(ui)));
         }
