@@ -30,7 +30,7 @@ pub use error::{GpuError, ImportError};
 pub use group_layout::GroupLayout;
 pub use image::Image;
 pub use kernel::{Kernel, MOST_GROUPS, THREADS, Task};
-pub use particles::{DeviceParticle, DeviceParticles};
+pub use particles::{DeviceParticle, DeviceParticles, Seen, SeenParticles};
 pub use pass::{Pass, PassTiming, Stopwatch, submit};
 pub use reflect::{MOST_STORAGE_BUFFERS, MOST_THREADS, check_layouts, check_layouts_in, check_shader};
 pub use shader::{COMPENSATED_SUMS, GROUP_REDUCTION, SUMS_BEFORE, ShaderLibrary, join};

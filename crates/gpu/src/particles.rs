@@ -1,7 +1,9 @@
 //! Particles of a model that are drawn where they lie: whoever moves them writes them, whoever draws them reads them, and
 //! nothing is downloaded to the host.
 
-use crate::{Gpu, GpuError, Shared, SharedPiece, read, storage, wait_for};
+use crate::{Gpu, GpuError, Shared, SharedPiece, THREADS, Task, read, storage, submit, wait_for};
+use bytemuck::NoUninit;
+use std::sync::OnceLock;
 
 crate::declare! {
     constants {}
@@ -93,5 +95,46 @@ impl DeviceParticles {
             wait_for(read::<u8>(gpu, &self.buffer, HEADER + count.min(self.room) * size_of::<DeviceParticle>()))?;
         let particles: Vec<DeviceParticle> = bytemuck::pod_collect_to_vec(&bytes[HEADER..]);
         Ok(particles.into_iter().filter(|particle| particle.volume > 0.0).collect())
+    }
+}
+
+/// Particles that a model on a device writes for drawing; made when they are first drawn.
+#[derive(Debug, Default)]
+pub struct SeenParticles(OnceLock<Seen>);
+
+/// What a model on a device writes for drawing, and how.
+#[derive(Debug)]
+pub struct Seen {
+    /// The particles.
+    pub particles: DeviceParticles,
+    /// Uniform that says which state is shown, as its time.
+    pub shown: wgpu::Buffer,
+    /// Writes the particles, a thread for each that there is room for.
+    pub task: Task,
+}
+
+impl SeenParticles {
+    /// Has the device write the particles as `shown` says; `make` makes what is needed at the first call.
+    ///
+    /// # Errors
+    /// Those of `make`.
+    pub fn write(
+        &self,
+        gpu: &Gpu,
+        shown: &impl NoUninit,
+        make: impl FnOnce() -> Result<Seen, GpuError>,
+    ) -> Result<DeviceParticles, GpuError> {
+        let seen = match self.0.get() {
+            Some(seen) => seen,
+            None => {
+                let made = make()?;
+                // Another thread that was faster has set the same value.
+                self.0.get_or_init(|| made)
+            }
+        };
+        gpu.queue.write_buffer(&seen.shown, 0, bytemuck::bytes_of(shown));
+        let groups = (seen.particles.room as u32).div_ceil(THREADS);
+        submit(gpu, "seen", None, |pass| seen.task.run(pass, groups));
+        Ok(seen.particles.clone())
     }
 }

@@ -23,12 +23,12 @@ use crate::solids::sources::upload::GpuSources;
 use crate::solids::upload::GpuSolids;
 use crate::utility::upload::distance_field;
 use bytemuck::Zeroable;
-use corpuscle_gpu::{BATCH_START, Batches, Gpu, GpuError, Halt, from_halves, from_pair, read, to_pair, wgpu};
+use corpuscle_gpu::{
+    BATCH_START, Batches, Gpu, GpuError, Halt, SeenParticles, from_halves, from_pair, read, to_pair, wgpu,
+};
 use corpuscle_sph::kernel::Kernel;
 use origin::Origin;
-use seen::Seen;
 use shared::{OutsideColumn, Parameters, Status, TURN};
-use std::sync::OnceLock;
 use tasks::Tasks;
 
 /// Humid air on a GPU.
@@ -54,7 +54,7 @@ pub(crate) struct GpuSolver {
     /// Whether the host has not the air that is here.
     ahead: bool,
     /// Once the air is drawn.
-    seen: OnceLock<Seen>,
+    seen: SeenParticles,
     /// Batches of steps until the device is lost.
     #[cfg(test)]
     pub lost_after: Option<u32>,
@@ -156,7 +156,7 @@ impl GpuSolver {
             water_uploaded: vec![0.0; of_solids],
             held_before,
             ahead: false,
-            seen: OnceLock::new(),
+            seen: SeenParticles::default(),
             #[cfg(test)]
             lost_after: None,
         })

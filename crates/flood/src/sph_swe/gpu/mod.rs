@@ -24,13 +24,11 @@ mod zones;
 pub(super) use measured::Observers;
 pub(super) use model::failed;
 
-use corpuscle_gpu::{Batches, Buffers, Gpu, GpuError, MOST_GROUPS, THREADS, wgpu};
+use corpuscle_gpu::{Batches, Buffers, Gpu, GpuError, MOST_GROUPS, SeenParticles, THREADS, wgpu};
 use corpuscle_terrain::Bounds;
 use obstacles::GpuObstacles;
-use seen::Seen;
 use shared::{Parameters, Status};
 use state::ObstacleTotals;
-use std::sync::OnceLock;
 use tasks::Tasks;
 use upload::{GpuInputs, Origin};
 
@@ -53,7 +51,7 @@ pub(super) struct OnGpu {
     /// The zone of each source.
     zones: Vec<u32>,
     /// The particles for drawing, once they are drawn.
-    seen: OnceLock<Seen>,
+    seen: SeenParticles,
     parameters: Parameters,
     origin: Origin,
     bounds: Bounds,
@@ -86,7 +84,7 @@ impl OnGpu {
             tasks,
             obstacles: uploaded.obstacles,
             zones: uploaded.zones,
-            seen: OnceLock::new(),
+            seen: SeenParticles::default(),
             parameters,
             origin: uploaded.origin,
             bounds: inputs.surroundings.edges.bounds,

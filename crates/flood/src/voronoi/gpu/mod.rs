@@ -22,16 +22,14 @@ pub(super) use tables::Tables;
 use super::local::{HIGHEST, REPEATED, WIDENED};
 use super::water::Column as ColumnOfCpu;
 use corpuscle_gpu::{
-    BATCH_START, Batches, Buffers, COMPENSATED_SUMS, GROUP_REDUCTION, Gpu, GpuError, Halt, Kernel, Pass, ShaderLibrary,
-    THREADS, Task, from_halves, from_pair, read, read_together, to_pair, wgpu,
+    BATCH_START, Batches, Buffers, COMPENSATED_SUMS, GROUP_REDUCTION, Gpu, GpuError, Halt, Kernel, Pass, SeenParticles,
+    ShaderLibrary, THREADS, Task, from_halves, from_pair, read, read_together, to_pair, wgpu,
 };
-use seen::Seen;
 use shared::{
     BESIDE_CREST_SLOT, BORDER_SLOT, CELL_SLOT, CREST_SLOT, Column, DISCHARGE_SLOT, FACE_SLOT, Memory, PART_BORDER_SLOT,
     PART_CELL_SLOT, PART_FACE_SLOT, PLAN_CELL_SLOT, PLAN_FACE_SLOT, PLAN_SLOT, Push, Record, STRUCTURE_SLOT, Status,
     Supply,
 };
-use std::sync::OnceLock;
 use upload::Input;
 
 const LIBRARY: ShaderLibrary<'_> = &[
@@ -198,7 +196,7 @@ pub(crate) struct GpuSolver {
     sides: Sides,
     status: Status,
     /// The water for drawing, once it is drawn.
-    seen: OnceLock<Seen>,
+    seen: SeenParticles,
 }
 
 /// Parts of a flood beside the motion of its water.
@@ -276,7 +274,7 @@ impl GpuSolver {
             cells,
             sides,
             status,
-            seen: OnceLock::new(),
+            seen: SeenParticles::default(),
         };
         solver.begin();
         Ok(solver)
@@ -290,7 +288,7 @@ impl GpuSolver {
         let gpu = self.batches.gpu();
         (self.memory, self.status) = input.upload(gpu)?;
         self.tasks = self.kernels.iter().map(|kernel| kernel.on(gpu, &self.memory)).collect();
-        self.seen = OnceLock::new();
+        self.seen = SeenParticles::default();
         (self.cells, self.sides) = (input.cells(), input.sides());
         self.begin();
         Ok(())
