@@ -250,15 +250,13 @@ fn fails_at_each(whole: &Whole<'_>, fault: &Fault, most: usize) -> usize {
     injected
 }
 
-fn all_fail(most: impl Fn(&Model) -> usize) {
+fn all_fail(model: &Model, most: usize) {
     if !has("strace", &["-o", "/dev/null", "true"]) {
         return;
     }
-    for model in &MODELS {
-        let whole = Whole::of(model);
-        let runs: usize = FAULTS.iter().map(|fault| fails_at_each(&whole, fault, most(model))).sum();
-        println!("{}: {runs} runs in which a call failed", model.name);
-    }
+    let whole = Whole::of(model);
+    let runs: usize = FAULTS.iter().map(|fault| fails_at_each(&whole, fault, most)).sum();
+    println!("{}: {runs} runs in which a call failed", model.name);
 }
 
 /// What a checkpoint counts is on the disk before it, and its name when it is there.
@@ -277,15 +275,31 @@ fn a_checkpoint_follows_the_rows_that_it_counts_onto_the_disk() {
     assert!(next.contains("fsync(") && next.contains("/checkpoint>"), "{next}");
 }
 
+// A test for each model, so that they run side by side.
 #[test]
-fn calls_that_fail_are_told_and_the_run_goes_on_to_the_same_bytes() {
-    all_fail(|model| model.few);
+fn calls_of_a_gas_that_fail_are_told_and_the_run_goes_on_to_the_same_bytes() {
+    all_fail(&MODELS[0], MODELS[0].few);
+}
+
+#[test]
+fn calls_of_dew_that_fail_are_told_and_the_run_goes_on_to_the_same_bytes() {
+    all_fail(&MODELS[1], MODELS[1].few);
+}
+
+#[test]
+fn calls_of_a_flood_that_fail_are_told_and_the_run_goes_on_to_the_same_bytes() {
+    all_fail(&MODELS[2], MODELS[2].few);
+}
+
+#[test]
+fn calls_of_a_flood_by_sph_swe_that_fail_are_told_and_the_run_goes_on_to_the_same_bytes() {
+    all_fail(&MODELS[3], MODELS[3].few);
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn each_call_that_fails_is_told_and_the_run_goes_on_to_the_same_bytes() {
-    all_fail(|_| usize::MAX);
+    MODELS.iter().for_each(|model| all_fail(model, usize::MAX));
 }
 
 /// Whether a run whose files come from pipes, a few bytes in each read, writes what it else does.
