@@ -1,7 +1,7 @@
 //! The text of a scene as a tree with the position of each value.
 
 use crate::error::{Place, Problem};
-use crate::{old_names, units};
+use crate::{TOO_DEEP, old_names, too_deep, units};
 use std::borrow::Cow;
 use std::ops::Range;
 use toml::de::{DeArray, DeTable, DeValue};
@@ -24,6 +24,10 @@ impl<'a> Document<'a> {
     pub fn parse(text: &'a str, name: &'a str, overrides: &'a [(String, String)]) -> Result<Self, Box<Problem>> {
         let root = Spanned::new(0..0, DeValue::Table(DeTable::new()));
         let mut document = Self { name, text, overrides, root, notes: Vec::new() };
+        if let Some(span) = too_deep(text) {
+            let what = format!("this is not TOML: {TOO_DEEP}");
+            return Err(Box::new(Problem { key: String::new(), what, place: Some(document.place(&span)) }));
+        }
         let table = DeTable::parse(text).map_err(|error| {
             let what = format!("this is not TOML: {}", error.message().trim_end());
             Box::new(Problem { key: String::new(), what, place: error.span().map(|span| document.place(&span)) })
@@ -152,10 +156,11 @@ impl<'a> Document<'a> {
 
 /// The value of an override: TOML where it is, else the words themselves, so that a name needs no quotes.
 fn override_value(text: &str, offset: usize) -> Spanned<DeValue<'_>> {
-    match DeValue::parse(text) {
-        Ok(value) => shifted(value, offset),
-        Err(_) => Spanned::new(offset..offset + text.len(), DeValue::String(Cow::Borrowed(text))),
+    let words = || Spanned::new(offset..offset + text.len(), DeValue::String(Cow::Borrowed(text)));
+    if too_deep(text).is_some() {
+        return words();
     }
+    DeValue::parse(text).map_or_else(|_| words(), |value| shifted(value, offset))
 }
 
 /// The same value with all its places moved on by `offset` bytes.

@@ -18,6 +18,7 @@ mod kernel;
 mod link;
 mod memory;
 mod model;
+mod nesting;
 mod old_names;
 mod parse;
 mod resolve;
@@ -39,6 +40,7 @@ pub use kernel::KernelName;
 pub use link::SceneLink;
 pub use memory::{hold_in_memory, in_memory, keep_in_memory, without_disk};
 pub use model::{ModelScene, ModelTables, ReadError, SceneKind, Tables, kinds, register};
+pub use nesting::{TOO_DEEP, too_deep};
 pub use series::{Series, Table};
 pub use terrain::*;
 

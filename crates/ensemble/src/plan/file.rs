@@ -4,11 +4,11 @@ use super::Plan;
 use super::sample::{MOST_SOBOL_KEYS, MOST_SOBOL_MEMBERS, combinations, latin_hypercube, sobol};
 use crate::folder::Chosen;
 use crate::{EnsembleError, Source};
-use corpuscle::scene::builtin;
+use corpuscle::scene::{TOO_DEEP, builtin, read_text, too_deep};
 use serde::Deserialize;
 use serde_json::{Number, Value};
 use std::collections::BTreeMap;
-use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Most members of a plan.
@@ -84,12 +84,15 @@ impl PlanFile {
     /// [`EnsembleError::Plan`] with the line or the key, [`EnsembleError::File`] for a file that cannot be read,
     /// [`EnsembleError::Scene`] for a scene that is not as it must be.
     pub fn read(path: &Path) -> Result<Self, EnsembleError> {
-        let text =
-            fs::read_to_string(path).map_err(|error| EnsembleError::plan(path, format!("cannot be read: {error}")))?;
-        let written: Written = toml::from_str(&text).map_err(|error| {
-            let line = error.span().map(|span| text[..span.start].matches('\n').count() + 1);
-            EnsembleError::Plan { path: path.to_owned(), line, what: error.message().to_owned() }
-        })?;
+        let text = read_text(path).map_err(|error| EnsembleError::plan(path, format!("cannot be read: {error}")))?;
+        let wrong_at = |place: Option<Range<usize>>, what: &str| {
+            let line = place.map(|place| text[..place.start].matches('\n').count() + 1);
+            EnsembleError::Plan { path: path.to_owned(), line, what: what.to_owned() }
+        };
+        if let Some(place) = too_deep(&text) {
+            return Err(wrong_at(Some(place), TOO_DEEP));
+        }
+        let written: Written = toml::from_str(&text).map_err(|error| wrong_at(error.span(), error.message()))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let plan = written.plan(path, folder)?;
         written.statistics.check().map_err(|what| EnsembleError::plan(path, what))?;
@@ -120,7 +123,7 @@ impl Written {
             }
             (Some(table), None) => {
                 let table = folder.join(table);
-                let text = fs::read_to_string(&table).map_err(EnsembleError::file(&table))?;
+                let text = read_text(&table).map_err(EnsembleError::file(&table))?;
                 Plan::from_csv(&text, &table)
             }
             (None, Some(sample)) => self.sampled(sample).map_err(wrong),
@@ -255,6 +258,7 @@ fn plain(key: &str, value: &toml::Value) -> Result<Value, String> {
 mod tests {
     use super::*;
     use serde_json::json;
+    use std::fs;
 
     fn read(text: &str) -> Result<PlanFile, EnsembleError> {
         let folder = tempfile::tempdir().unwrap();

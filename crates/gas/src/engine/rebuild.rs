@@ -26,7 +26,9 @@ impl<const D: usize> Engine<D> {
 
     fn rebuild_as<M: Mode>(&mut self) {
         self.world.begin_window::<M>();
-        self.grid = self.fitting_grid();
+        self.grid = self
+            .fitting_grid()
+            .expect("checked before: the box is at least three of the largest balls wide across periodic sides");
         self.sort();
         self.fill_cells();
         self.handled = 0;
@@ -47,8 +49,9 @@ impl<const D: usize> Engine<D> {
         }
     }
 
-    /// A grid for the box as it was at the beginning of the window.
-    pub(super) fn fitting_grid(&self) -> Grid<D> {
+    /// A grid for the box as it was at the beginning of the window; none for a box that is less than three of the largest balls wide across
+    /// periodic sides.
+    pub(super) fn fitting_grid(&self) -> Option<Grid<D>> {
         let world = &self.world;
         let mut diameters: Vec<f64> = (0..world.balls.len()).map(|ball| world.reach(ball)).collect();
         let periodic = world.field.period.map(|period| period > 0.0);
@@ -62,7 +65,6 @@ impl<const D: usize> Engine<D> {
         let one_level = largest < 2.0 * usual || world.field.is_sheared();
         let finest = if one_level { largest } else { usual };
         Grid::new(world.low, world.length, periodic, finest.max(thin) * SLACK, largest * SLACK, 8 * count + 64)
-            .expect("checked before: the box is at least three of the largest balls wide across periodic sides")
     }
 
     /// Puts balls that are near each other in space near each other in memory: in Morton order of their cells.

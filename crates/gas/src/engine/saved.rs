@@ -50,7 +50,7 @@ impl<const D: usize> Engine<D> {
         {
             return None;
         }
-        self.grid = self.fitting_grid();
+        self.grid = self.fitting_grid()?;
         self.events.clear();
         for ball in 0..count {
             let level = saved.level[ball];

@@ -40,7 +40,7 @@ impl<const D: usize> Gas<D> {
     }
 
     /// What happens by plan next, and when; of things at one time the first named here.
-    fn next_due(&self) -> (f64, Option<Due>) {
+    pub(super) fn next_due(&self) -> (f64, Option<Due>) {
         let mut next = (f64::INFINITY, None);
         let mut offer = |time: f64, due: Due| {
             if time < next.0 {

@@ -125,6 +125,10 @@ impl<const D: usize> Gas<D> {
         (self.lifted, self.reversed, self.next_sample) = (state.lifted, state.reversed, state.next_sample);
         (self.measures, self.initial, self.shown) = (state.measures, state.initial, state.shown);
         (self.checked, self.live) = (state.checked, state.live);
+        // All that was due by then has been done: what is due again and again would be made up for, however often.
+        if self.next_due().0 < self.shown {
+            return Err(other());
+        }
         Ok(())
     }
 }
@@ -217,5 +221,37 @@ impl SavedWorld {
             followed.bends = self.bends.iter().filter_map(|(time, place)| Some((*time, vector(place, 0)?))).collect();
         }
         Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::setup::Setup;
+    use corpuscle_model::Model;
+    use std::sync::atomic::AtomicBool;
+
+    /// A gas in steady shear at 1, with a sample each tenth.
+    fn gas() -> Gas<2> {
+        let mut gas = Setup::<2>::fluid(30, 0.3).shear(0.1, None).measured(0.0, 0.1).build().unwrap();
+        gas.advance_to(1.0, &AtomicBool::new(false)).unwrap();
+        gas
+    }
+
+    /// Whether a state is taken back after a change.
+    fn is_taken_back(change: impl Fn(&mut State)) -> bool {
+        let mut gas = gas();
+        let mut state: State = postcard::from_bytes(&gas.saved()).unwrap();
+        change(&mut state);
+        gas.take_back(&postcard::to_stdvec(&state).unwrap()).is_ok()
+    }
+
+    #[test]
+    fn a_state_that_cannot_be_gone_on_with_is_refused() {
+        assert!(is_taken_back(|_| {}));
+        // Samples were made up for one by one, until memory was full.
+        assert!(!is_taken_back(|state| state.next_sample = 0));
+        // A box too narrow for its balls ended the program.
+        assert!(!is_taken_back(|state| state.world.length = vec![1.0, 1.0]));
     }
 }

@@ -56,7 +56,7 @@ pub(super) fn check_bytes(path: &Path, file: &GeoTiffFile) -> Result<SampleForma
 /// What a file says of itself.
 pub(super) fn survey(path: &Path) -> Result<Survey, TerrainError> {
     let file = open(path)?;
-    let samples = SampleFormat::of(&file).map_err(|error| refused(path, &error))?.in_words();
+    let samples = check_bytes(path, &file)?.in_words();
     Ok(Survey {
         columns: file.width() as usize,
         rows: file.height() as usize,
