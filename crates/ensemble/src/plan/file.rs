@@ -8,7 +8,6 @@ use corpuscle::scene::{TOO_DEEP, builtin, read_text, too_deep};
 use serde::Deserialize;
 use serde_json::{Number, Value};
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Most members of a plan.
@@ -85,7 +84,7 @@ impl PlanFile {
     /// [`EnsembleError::Scene`] for a scene that is not as it must be.
     pub fn read(path: &Path) -> Result<Self, EnsembleError> {
         let text = read_text(path).map_err(|error| EnsembleError::plan(path, format!("cannot be read: {error}")))?;
-        let wrong_at = |place: Option<Range<usize>>, what: &str| {
+        let wrong_at = |place: Option<std::ops::Range<usize>>, what: &str| {
             let line = place.map(|place| text[..place.start].matches('\n').count() + 1);
             EnsembleError::Plan { path: path.to_owned(), line, what: what.to_owned() }
         };
