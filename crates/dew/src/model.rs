@@ -211,6 +211,7 @@ impl Model for Dew {
             || state.supplied.len() != self.state.supplied.len()
             || state.temperatures.len() != self.state.temperatures.len()
             || state.water_on.len() != self.state.water_on.len()
+            || !state.air.iter().all(|particle| particle.role.names_a_face())
         {
             return Err(refused("it belongs to another scene".into()));
         }

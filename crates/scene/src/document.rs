@@ -1,6 +1,7 @@
 //! The text of a scene as a tree with the position of each value.
 
 use crate::error::{Place, Problem};
+use crate::nesting::DEEPEST;
 use crate::{TOO_DEEP, old_names, too_deep, units};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -189,6 +190,9 @@ fn set<'a>(
 ) -> Result<(), String> {
     if path.split('.').any(str::is_empty) {
         return Err(": a path is words joined by dots, as in --set flood.inflow.0.discharge_m3_per_s=30".into());
+    }
+    if words.len() > DEEPEST {
+        return Err(format!(": a path has at most {DEEPEST} words"));
     }
     let mut node = root;
     let mut words = words.into_iter().peekable();

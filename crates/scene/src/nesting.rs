@@ -4,20 +4,38 @@ use std::ops::Range;
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-/// Most brackets that are open at one place. The parser's own bound does not hold after an error (toml_parser 1.1.5): it calls itself for each
+/// Most lists and tables that are open at one place. The parser's own bound does not hold after an error (toml_parser 1.1.5): it calls itself for each
 /// bracket, until the stack is full.
-const DEEPEST: usize = 80;
+pub(crate) const DEEPEST: usize = 80;
 
-/// The first bracket of a text in TOML within 80 others, as a range of bytes: such a text must not be parsed.
+/// The first place of a text in TOML that is within 80 lists and tables, as a range of bytes: such a text must not be parsed. A key of several
+/// words is a table for each.
 pub fn too_deep(text: &str) -> Option<Range<usize>> {
-    let mut open = 0_usize;
+    // What closes each list or table that is open, with the dots of its present key; and how deep all that is.
+    let (mut open, mut depth) = (vec![(TokenKind::Eof, 0_usize)], 0_usize);
     for token in Source::new(text).lex() {
-        match token.kind() {
-            TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket => open += 1,
-            TokenKind::RightSquareBracket | TokenKind::RightCurlyBracket => open = open.saturating_sub(1),
+        let kind = token.kind();
+        match kind {
+            TokenKind::LeftSquareBracket => open.push((TokenKind::RightSquareBracket, 0)),
+            TokenKind::LeftCurlyBracket => open.push((TokenKind::RightCurlyBracket, 0)),
             _ => {}
         }
-        if open > DEEPEST {
+        let Some((closes, dots)) = open.last_mut() else { return None };
+        match kind {
+            TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket => depth += 1,
+            // Another bracket than the one that is open closes nothing.
+            TokenKind::RightSquareBracket | TokenKind::RightCurlyBracket if *closes == kind => {
+                depth -= 1 + *dots;
+                open.pop();
+            }
+            TokenKind::Dot => {
+                *dots += 1;
+                depth += 1;
+            }
+            TokenKind::Newline | TokenKind::Comma => depth -= std::mem::take(dots),
+            _ => {}
+        }
+        if depth > DEEPEST {
             return Some(token.span().start()..token.span().end());
         }
     }
@@ -39,6 +57,9 @@ mod tests {
         assert_eq!(too_deep(&line.repeat(100)), None);
         assert_eq!(too_deep(&format!("a = {}1{}", "[".repeat(80), "]".repeat(80))), None);
         assert_eq!(too_deep(&format!("a = {}1", "[".repeat(81))), Some(84..85));
+        assert_eq!(too_deep(&"a = [1.5, 2.5]\nb.c = { d.e = 1.5 }\n".repeat(100)), None);
+        assert!(too_deep(&"a = [{}}] {{ ] ".repeat(100)).is_some());
+        assert_eq!(too_deep(&format!("a = {{ {}b = 1 }}", "c.".repeat(80))), Some(165..166));
     }
 
     /// The stack overflowed, in `toml_parser`, at 9,700 tables that are not closed, each with an error in it.
@@ -46,7 +67,10 @@ mod tests {
     fn a_text_that_nests_too_deep_is_refused_with_its_place() {
         let text = "x = { inflow = { v5.0, y = 0.8, z = [3, 0.0] }\n[dew.faces]\n".repeat(20_000);
         let error = Scene::parse(&text, "deep.toml", &[]).unwrap_err().to_string();
-        assert!(error.contains("deep.toml:159") && error.contains("one within the other"), "{error}");
+        assert!(error.contains("deep.toml:155") && error.contains("one within the other"), "{error}");
+        let path = (["a"; 200_000].join("."), "1".to_owned());
+        let error = Scene::parse("run.until_s = 1", "a.toml", &[path]).unwrap_err().to_string();
+        assert!(error.contains("at most 80 words"), "{}", &error[error.len() - 300..]);
         let change = ("seed".to_owned(), text);
         let error = Scene::parse("run.until_s = 1", "a.toml", &[change]).unwrap_err().to_string();
         assert!(error.contains("seed"), "{error}");

@@ -48,6 +48,16 @@ pub enum Role {
     Idle,
 }
 
+impl Role {
+    /// Whether the face that it names, if any, is one of a room.
+    pub fn names_a_face(self) -> bool {
+        match self {
+            Self::Coming(axis, side) | Self::Leaving(axis, side) | Self::Outside(axis, side) => axis < 3 && side < 2,
+            Self::Inside | Self::Still | Self::Gone | Self::Idle => true,
+        }
+    }
+}
+
 impl Particle {
     /// Air at rest, without fog.
     pub fn new(id: u64, position: [f64; 3], temperature: f64, vapour: f64) -> Self {

@@ -72,6 +72,10 @@ impl<const D: usize> Engine<D> {
         if self.world.field.is_sheared() {
             self.slid_cells = saved.slid_cells;
             self.next_watch = self.next_slide();
+            // What it has slid by then is done: each cell of it would be made up for.
+            if self.next_watch.is_nan() || self.next_watch < self.world.now {
+                return None;
+            }
         }
         (self.handled, self.crossings, self.disturbed) = (saved.handled, saved.crossings, saved.disturbed);
         self.fill_queue();

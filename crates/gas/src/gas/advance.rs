@@ -36,6 +36,10 @@ impl<const D: usize> Gas<D> {
             if let Some(due) = due {
                 self.carry_out(when, due);
             }
+            if stop.load(Ordering::Relaxed) {
+                self.shown = self.shown.max(self.mover.world().time());
+                return Ok(());
+            }
         }
     }
 

@@ -126,7 +126,7 @@ impl<const D: usize> Gas<D> {
         (self.measures, self.initial, self.shown) = (state.measures, state.initial, state.shown);
         (self.checked, self.live) = (state.checked, state.live);
         // All that was due by then has been done: what is due again and again would be made up for, however often.
-        if self.next_due().0 < self.shown {
+        if !self.shown.is_finite() || self.next_due().0 < self.shown {
             return Err(other());
         }
         Ok(())
@@ -251,6 +251,8 @@ mod tests {
         assert!(is_taken_back(|_| {}));
         // Samples were made up for one by one, until memory was full.
         assert!(!is_taken_back(|state| state.next_sample = 0));
+        assert!(!is_taken_back(|state| state.shown = f64::NAN));
+        assert!(!is_taken_back(|state| state.world.slide.displacement = 1e9));
         // A box too narrow for its balls ended the program.
         assert!(!is_taken_back(|state| state.world.length = vec![1.0, 1.0]));
     }

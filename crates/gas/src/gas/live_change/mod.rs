@@ -101,6 +101,7 @@ impl LiveTally {
     /// Whether it is of a gas with so many walls.
     pub(super) fn fits(&self, walls: usize) -> bool {
         self.grips.iter().all(|grip| grip.wall() < walls)
+            && self.thermostat.is_none_or(|thermostat| thermostat.goes_on())
     }
 }
 

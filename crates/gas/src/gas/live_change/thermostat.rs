@@ -20,6 +20,13 @@ pub(crate) struct Thermostat {
     pub next: f64,
 }
 
+impl Thermostat {
+    /// Whether its numbers are some with which time goes on.
+    pub fn goes_on(&self) -> bool {
+        self.temperature.is_finite() && self.next + self.every > self.next
+    }
+}
+
 impl<const D: usize> Gas<D> {
     /// Holds the temperature from now on, or no longer.
     pub(in super::super) fn hold_temperature(&mut self, temperature: Option<f64>) -> Result<(), ModelError> {
