@@ -20,7 +20,7 @@ pub fn too_deep(text: &str) -> Option<Range<usize>> {
             TokenKind::LeftCurlyBracket => open.push((TokenKind::RightCurlyBracket, 0)),
             _ => {}
         }
-        let Some((closes, dots)) = open.last_mut() else { return None };
+        let (closes, dots) = open.last_mut()?;
         match kind {
             TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket => depth += 1,
             // Another bracket than the one that is open closes nothing.
