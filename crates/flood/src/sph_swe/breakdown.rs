@@ -15,7 +15,7 @@ impl SphSweFlood {
         let (particle, Defect { quantity, value, .. }) = broken.min_by_key(|(_, defect)| defect.rank)?;
         let place = self.place_of(particle);
         let what = format!(
-            "{place} the {quantity} of particle {} is {value}. Look at the ground and the water there, in the last frame; \
+            "{place} the {quantity} of particle {} is {value:.4e}. Look at the ground and the water there, in the last frame; \
              a shorter time step (flood.sph_swe.time_step_s) or a smaller flood.spacing_m may help",
             particle.id
         );

@@ -2,6 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Speed of light in vacuum, m/s: water that is said to be faster comes of a computation that has broken down. Far below it no square,
+/// momentum or energy overflows.
+const SPEED_OF_LIGHT: f64 = 299_792_458.0;
+
+/// The rank of the speed among a particle's quantities.
+const SPEED: usize = 3;
+
 /// A particle: a column of water that moves with the flow, of a volume that never changes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Particle {
@@ -66,23 +73,24 @@ impl Particle {
         }
     }
 
-    /// Whether all its values are finite numbers, and its volume is positive.
+    /// Whether all its values are finite numbers, its volume is positive, and it is slower than light.
     #[inline]
     pub(crate) fn is_sound(&self) -> bool {
         let Self { x, y, u, v, ax, ay, volume, h, next_h, depth, ground, ground_slope, .. } = self;
         let [ground_x, ground_y] = ground_slope;
         let sum = x + y + u + v + ax + ay + volume + h + next_h + depth + ground;
         // A sum of finite numbers of this size is finite; one with a number that is not, is not.
-        *volume > 0.0 && (sum + ground_x + ground_y).is_finite()
+        *volume > 0.0 && u * u + v * v < SPEED_OF_LIGHT * SPEED_OF_LIGHT && (sum + ground_x + ground_y).is_finite()
     }
 
-    /// The first of its quantities that is no finite number, or a volume that is not positive, with its value; none
-    /// where it is sound. Those of which the others are computed come first.
+    /// The first of its quantities that is no finite number, a volume that is not positive, or a speed above that of light, with its
+    /// value; none where it is sound. Those of which the others are computed come first.
     pub(crate) fn defect(&self) -> Option<Defect> {
         let quantities = [
             ("volume", [if self.volume > 0.0 { 0.0 } else { f64::NAN }, self.volume]),
             ("position", [self.x, self.y]),
             ("velocity", [self.u, self.v]),
+            ("speed", [if self.speed() < SPEED_OF_LIGHT { 0.0 } else { f64::NAN }, self.speed()]),
             ("height of the ground", [self.ground, 0.0]),
             ("slope of the ground", self.ground_slope),
             ("smoothing length", [self.h, self.next_h]),
@@ -94,6 +102,7 @@ impl Particle {
         let (quantity, values) = quantities[rank];
         let value = match rank {
             0 => self.volume,
+            SPEED => self.speed(),
             _ if values[0].is_finite() => values[1],
             _ => values[0],
         };
@@ -152,5 +161,9 @@ mod tests {
             assert!(!particle.is_sound());
             assert_eq!(particle.defect(), Some(Defect { rank: 0, quantity: "volume", value: volume }));
         }
+        // Their squares are no numbers.
+        let (fast, slow) = (Particle { v: -1e200, ..sound }, Particle { v: -1e8, ..sound });
+        assert!(!fast.is_sound() && slow.is_sound() && slow.defect().is_none());
+        assert_eq!(fast.defect().map(|defect| defect.quantity), Some("speed"));
     }
 }
