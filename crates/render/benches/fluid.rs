@@ -36,7 +36,7 @@ fn row(gpu: &Gpu, particles: usize, size: [u32; 2]) {
     let renderer = Renderer::new(gpu);
     let camera = Camera::orbit(&stage, [-1.2, 0.7], 0.6, f64::from(size[0]) / f64::from(size[1]), 0.0);
     let target = Target::new(gpu, size, 1).expect("within every device's limits");
-    let mut fluid = FluidPainter::new(&renderer).fluid(gpu, &stage, FluidStyle::water(0.5));
+    let mut fluid = FluidPainter::new(&renderer).fluid(gpu, &stage, FluidStyle::water(0.5)).unwrap();
     fluid.fill(gpu, (0..particles).map(|index| droplet(index, side as usize)));
     fluid.measure();
     let mut best: Option<Vec<(FluidPass, Duration)>> = None;

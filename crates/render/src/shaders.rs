@@ -4,7 +4,7 @@ use crate::shared::declared;
 use corpuscle_gpu::{DECLARED, Gpu, GroupLayout, ImportError, join, wgpu};
 
 /// Pieces by name: see `#import`.
-const LIBRARY: [(&str, &str); 20] = [
+const LIBRARY: [(&str, &str); 22] = [
     ("full_screen", include_str!("full_screen.wgsl")),
     ("noise", include_str!("noise.wgsl")),
     ("view", include_str!("view.wgsl")),
@@ -24,6 +24,8 @@ const LIBRARY: [(&str, &str); 20] = [
     ("surface", include_str!("solids/surface.wgsl")),
     ("cut", include_str!("terrain/cut.wgsl")),
     ("splat", include_str!("fluid/splat.wgsl")),
+    ("wet_ground", include_str!("fluid/wet_ground/wet_ground.wgsl")),
+    ("wetness", include_str!("fluid/wet_ground/wetness.wgsl")),
     ("splat_sums", include_str!("fluid/splat_sums.wgsl")),
 ];
 

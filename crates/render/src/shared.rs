@@ -172,6 +172,22 @@ corpuscle_gpu::declare! {
             pub(crate) ripples: [f32; 4],
         }
 
+        /// The grid of ground that was under water.
+        pub(crate) struct WetGround {
+            /// Its south-western corner, stage units.
+            pub(crate) corner: [f32; 2],
+            /// Cells in a stage unit.
+            pub(crate) per_unit: f32,
+            /// How far above the water ground is soaked, stage units.
+            pub(crate) soaked: f32,
+            /// Cells eastwards and northwards.
+            pub(crate) cells: [u32; 2],
+            /// Time since the first picture, and 1, s.
+            pub(crate) now: f32,
+            /// 1 over the time in which ground dries, 1/s.
+            pub(crate) drying: f32,
+        }
+
         /// A floor that only its shadows show.
         pub(crate) struct Floor {
             /// Height in stage coordinates.

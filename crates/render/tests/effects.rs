@@ -101,7 +101,7 @@ fn pond_picture_in(
     wall: bool,
 ) -> Image {
     let (gpu, stage) = (table.gpu(), pond_stage());
-    let mut fluid = FluidPainter::new(&table.renderer).fluid(gpu, &stage, style);
+    let mut fluid = FluidPainter::new(&table.renderer).fluid(gpu, &stage, style).unwrap();
     fluid.fill(gpu, droplets);
     fluid.set_time(gpu, time);
     let painter = BallPainter::new(&table.renderer);
@@ -188,7 +188,7 @@ fn ground_beside_water_is_darker_where_it_is_wet() {
     let field = HeightField::sampled([0.0; 2], [40.0, 25.0], [41, 26], |_, _| -1.0);
     let draw = |droplets: Vec<Droplet>| {
         let mut ground = Terrain::new(&table.renderer, &stage, field.clone(), &grey, -1.0).unwrap();
-        let mut fluid = FluidPainter::new(&table.renderer).fluid(gpu, &stage, FluidStyle::water(0.5));
+        let mut fluid = FluidPainter::new(&table.renderer).fluid(gpu, &stage, FluidStyle::water(0.5)).unwrap();
         fluid.fill(gpu, droplets);
         table.draw(&stage, &camera, &Light::day().without_shadows(), &mut [&mut ground, &mut fluid])
     };
@@ -202,6 +202,46 @@ fn ground_beside_water_is_darker_where_it_is_wet() {
     println!("{beside:?}");
     assert!(beside.iter().any(|part| *part < 0.85));
     assert!((at(&wet, 25.0) / at(&dry, 25.0) - 1.0).abs() < 0.01);
+}
+
+/// A slope towards the north, up which water stood, and from which it has run off to the south.
+#[test]
+fn ground_that_was_under_water_is_darker_until_it_has_dried() {
+    let Some(table) = Table::open("ground that dries") else { return };
+    let (stage, gpu) = (pond_stage(), table.gpu());
+    let camera = Camera::plan(&stage, ASPECT, [0.0; 4]);
+    let grey = Image { width: 1, height: 1, rgba: vec![150, 150, 150, 255] };
+    let field = HeightField::sampled([0.0; 2], [40.0, 25.0], [41, 26], |_, y| 0.08 * (y - 12.5));
+    let mut ground = Terrain::new(&table.renderer, &stage, field, &grey, -1.0).unwrap();
+    let style = FluidStyle { drying: 100.0, ..FluidStyle::water(0.5) };
+    let mut fluid = FluidPainter::new(&table.renderer).fluid(gpu, &stage, style).unwrap();
+    let mut draw = |time, high: bool| {
+        // Discs reach beyond the shore, as those of particles on a slope do.
+        let is_wet = |droplet: &Droplet| droplet.place[1] < if high { 13.5 } else { 5.0 };
+        fluid.fill(gpu, pond(still, 0.0, 1.0).into_iter().filter(is_wet));
+        fluid.set_time(gpu, time);
+        table.draw(&stage, &camera, &Light::day().without_shadows(), &mut [&mut ground, &mut fluid])
+    };
+    let at = |image: &Image, y: f64| {
+        let [u, v] = camera.project(&stage, ASPECT, [20.0, y, 0.0]).unwrap();
+        brightness(image, [u - 0.1, v], [u + 0.1, v + 0.01])
+    };
+    let first = draw(0.0, false);
+    let (dry, above) = (at(&first, 10.0), at(&first, 20.0));
+    draw(10.0, true);
+    // At once, after one time of drying, and after many.
+    let left = [10.0, 110.0, 900.0].map(|time| {
+        let image = draw(time, false);
+        // Where no water was nothing is soaked.
+        assert!((at(&image, 20.0) / above - 1.0).abs() < 0.02, "{time}");
+        1.0 - at(&image, 10.0) / dry
+    });
+    println!("darker by {left:?}");
+    assert!(left[0] > 0.12 && left[0] < 0.35 && left[2].abs() < 0.01, "{left:?}");
+    assert!((left[1] / left[0] - (-1f64).exp()).abs() < 0.08, "{left:?}");
+    // A film that begins again has no memory of what comes later.
+    draw(2000.0, true);
+    assert!((at(&draw(0.0, false), 10.0) / dry - 1.0).abs() < 0.01);
 }
 
 /// A pane in the plane y = 0, seen from the south before a dim room.

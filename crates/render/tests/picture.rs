@@ -302,7 +302,7 @@ fn what_stands_and_its_shadows_are_kept_while_only_water_moves() {
     let painter = BallPainter::new(&table.renderer);
     let mut draw = |table: &Table, sun: f64, height: f64, at: f64, with_ball: bool| {
         let camera = Camera::orbit(&stage, [-1.2, 0.4], 0.6, ASPECT, 0.0);
-        let mut water = fluids.fluid(gpu, &stage, FluidStyle::water(0.5));
+        let mut water = fluids.fluid(gpu, &stage, FluidStyle::water(0.5)).unwrap();
         water.fill(gpu, [Droplet::ball([at, 4.0, 0.6], 0.5)]);
         let mut ball = painter.balls(gpu, &stage, &BallStyle::new(viridis()), [([at, 2.0, 1.0], 0.5, 0.8)]);
         floor.lay_at(height);

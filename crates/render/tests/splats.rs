@@ -57,7 +57,7 @@ fn picture_of(
     fill: impl FnOnce(&mut Fluid),
 ) -> Image {
     let renderer = Renderer::new(gpu);
-    let mut fluid = FluidPainter::new(&renderer).fluid(gpu, stage, style);
+    let mut fluid = FluidPainter::new(&renderer).fluid(gpu, stage, style).unwrap();
     fluid.set_time(gpu, 1.3);
     fluid.splat(splats);
     fill(&mut fluid);

@@ -195,13 +195,17 @@ impl FloodPicture {
     /// Updates the water to a moment, from these sets where it is not in GPU memory; false where there is none.
     fn fill_water(&mut self, context: &DrawContext, moment: &Moment<'_>, sets: &[ParticleSet]) -> Result<bool, Error> {
         let spacing = moment.on_device.map(|particles| particles.spacing);
-        let Some(radius) = spacing.map(|spacing| 0.5 * spacing).or_else(|| mean_radius(sets)) else { return Ok(false) };
+        let radius = spacing.map(|spacing| 0.5 * spacing).or_else(|| mean_radius(sets));
         let Self { stage, field, .. } = self;
         let (gpu, time) = (context.renderer.gpu(), moment.frame.time);
         let within = Some([stage.from, stage.to].map(|corner| [corner.x, corner.y]));
-        let style = || FluidStyle { within, ..self.water_colour.style(radius).turbid(self.turbid) };
-        // Its style is that of the first particles there are, so that it does not change in a film.
-        let fluid = self.fluid.get_or_insert_with(|| context.fluids.fluid(gpu, stage, style()));
+        let style = |radius| FluidStyle { within, ..self.water_colour.style(radius).turbid(self.turbid) };
+        // Its style is that of the first particles there are, so that it does not change in a film. Where all have gone the ground is still wet.
+        let fluid = match (&mut self.fluid, radius) {
+            (Some(fluid), _) => fluid,
+            (none, Some(radius)) => none.insert(context.fluids.fluid(gpu, stage, style(radius))?),
+            (None, None) => return Ok(false),
+        };
         fluid.splat(self.splats);
         fluid.set_time(gpu, time);
         if let Some(particles) = moment.on_device {

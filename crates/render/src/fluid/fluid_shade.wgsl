@@ -4,6 +4,7 @@
 #import light
 #import ripples
 #import mirror
+#import wetness
 
 @group(1) @binding(1) var distances: texture_2d<f32>;
 @group(1) @binding(2) var normals: texture_2d<u32>;
@@ -11,6 +12,9 @@
 // Colour; 0 in the last where there is nothing to draw.
 @group(1) @binding(7) var shaded: texture_storage_2d<rgba16float, write>;
 @group(1) @binding(8) var flow: texture_2d<f32>;
+@group(1) @binding(9) var<uniform> wet: WetGround;
+@group(1) @binding(10) var<storage, read> wet_latest: array<u32>;
+@group(1) @binding(11) var<storage, read> wet_levels: array<u32>;
 
 // Refractive index of air over that of water, and what water mirrors of light that falls straight on it.
 const AIR_OVER_WATER_INDEX: f32 = 1.0 / 1.333;
@@ -22,8 +26,6 @@ const CLOSED_COVER: f32 = 3.1;
 // How well they cover a place (halfway out of a straight shore 1.5) where water begins to be seen, and where
 // nothing else is: shores follow this, not the rims of discs.
 const SHORE: vec2f = vec2f(0.35, 0.65);
-// Wet ground beside water gives back so much less light.
-const WET: f32 = 0.4;
 // Speeds at which ripples begin to be seen and from which they are steepest, m/s.
 const RIPPLED: vec2f = vec2f(0.02, 2.0);
 // Less than this of the light mirrored is not looked up in the picture.
@@ -76,7 +78,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let uv = (vec2f(pixel) + 0.5) / view.frame.xy;
     let matter = textureSampleLevel(thickness, linear, uv, 0.0);
-    let dry = textureLoad(behind_colour, pixel, 0).rgb * (1.0 - WET * smoothstep(0.01, 0.5 * SHORE.x, matter.a));
+    let ground_depth = textureLoad(behind_depth, pixel, 0);
+    let soaked = wetness(world_at_pixel(vec2f(pixel) + 0.5, max(ground_depth, 1e-6)));
+    let damp = max(select(soaked, 0.0, ground_depth == 0.0), smoothstep(0.01, 0.5 * SHORE.x, matter.a));
+    let beside = textureLoad(behind_colour, pixel, 0).rgb * (1.0 - WET * damp);
     let velocity = textureSampleLevel(flow, linear, uv, 0.0).xy / max(matter.a, 1e-3);
     let patterns = carried(place.xy, velocity / view.frame.z);
     let moving = smoothstep(RIPPLED.x, RIPPLED.y, length(velocity));
@@ -130,5 +135,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     colour = hazed(colour, place);
     let covered = smoothstep(SHORE.x, SHORE.y, matter.a);
-    textureStore(shaded, pixel, vec4f(mix(dry, colour, covered), 1.0));
+    textureStore(shaded, pixel, vec4f(mix(beside, colour, covered), 1.0));
 }

@@ -6,8 +6,9 @@
 //! thickness  the same, added up: water, foam and flow in a line of sight fluid_thickness.wgsl
 //! smoothing  narrow-range or bilateral filter of depth                  narrow_range.wgsl, bilateral.wgsl
 //! normals    from the smoothed depth                                    fluid_normals.wgsl
+//! wetting    ground that is under water now                            wet_ground/wet_mark.wgsl
 //! shading    ripples, refraction, mirror, highlight, foam               fluid_shade.wgsl, ripples.wgsl, mirror.wgsl
-//! composing  into the picture, where it is not hidden                   fluid_compose.wgsl
+//! composing  into the picture, where it is not hidden; wet ground       fluid_compose.wgsl, wet_ground/wetness.wgsl
 //! ```
 //!
 //! Whatever does arithmetic pixel by pixel is a compute shader: fragment shaders only draw sprites and copy. On GPUs, which have few
@@ -23,6 +24,7 @@ mod sides;
 mod style;
 mod thing;
 mod water;
+mod wet_ground;
 
 #[cfg(test)]
 mod picture;

@@ -5,7 +5,7 @@ use super::{Fluid, FluidStyle};
 use crate::pipeline::PipelineDescriptor;
 use crate::shaders::Shader;
 use crate::shared::{DropletInstance, buffer_layout};
-use crate::{Renderer, Stage, shaders};
+use crate::{RenderError, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, GroupLayout, SharedStruct, wgpu};
 
 /// Draws fluids; holds the pipelines of all.
@@ -21,6 +21,7 @@ pub struct FluidPainter {
     pub(super) narrow_range: Filter,
     pub(super) square: Filter,
     pub(super) normals: Filter,
+    pub(super) wet_mark: Filter,
     pub(super) shading: Filter,
     pub(super) composing: wgpu::RenderPipeline,
     pub(super) composed: GroupLayout,
@@ -58,6 +59,7 @@ impl FluidPainter {
             narrow_range: filter(narrow, "along"),
             square: filter(narrow, "square"),
             normals: filter(("fluid_normals", include_str!("fluid_normals.wgsl")), "main"),
+            wet_mark: filter(("wet_mark", include_str!("wet_ground/wet_mark.wgsl")), "main"),
             shading: Filter::new(gpu, view, &shading, "main"),
             composing: PipelineDescriptor {
                 label: "composing",
@@ -79,7 +81,10 @@ impl FluidPainter {
     }
 
     /// A fluid of this style, still without particles.
-    pub fn fluid(&self, gpu: &Gpu, stage: &Stage, style: FluidStyle) -> Fluid {
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] where there is no memory for the record of wet ground.
+    pub fn fluid(&self, gpu: &Gpu, stage: &Stage, style: FluidStyle) -> Result<Fluid, RenderError> {
         Fluid::new(self.clone(), gpu, *stage, style)
     }
 }

@@ -1,5 +1,6 @@
 //! The passes, one by one.
 
+use super::droplet::Batch;
 use super::layers::{Layers, whole};
 use super::painter::Filter;
 use super::{Fluid, Smoothing};
@@ -19,16 +20,18 @@ pub enum FluidPass {
     Smoothing,
     /// Normals from depth.
     Normals,
+    /// Which ground is under water.
+    Wetting,
     /// Colours.
     Shading,
-    /// Into the picture.
+    /// Into the picture, and ground that is still wet.
     Composing,
 }
 
 impl FluidPass {
     /// All, in their order.
-    pub const ALL: [Self; 6] =
-        [Self::Depth, Self::Thickness, Self::Smoothing, Self::Normals, Self::Shading, Self::Composing];
+    pub const ALL: [Self; 7] =
+        [Self::Depth, Self::Thickness, Self::Smoothing, Self::Normals, Self::Wetting, Self::Shading, Self::Composing];
 }
 
 impl Fluid {
@@ -39,6 +42,7 @@ impl Fluid {
             FluidPass::Thickness => self.draw_thickness(layers, frame),
             FluidPass::Smoothing => self.smooth(layers, frame),
             FluidPass::Normals => self.find_normals(layers, frame),
+            FluidPass::Wetting => self.wet(frame),
             FluidPass::Shading => self.shade(layers, frame),
             FluidPass::Composing => self.compose(layers, frame),
         }
@@ -172,6 +176,31 @@ impl Fluid {
         run(&self.painter.normals, &bound, layers.size, frame);
     }
 
+    /// Notes where there is water.
+    fn wet(&self, frame: &mut Through<'_>) {
+        let marking = &self.painter.wet_mark;
+        let wet = &self.wet_ground;
+        let of_batch = |batch: &Batch| {
+            let [droplets, draw_args] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
+            let bound = [
+                ("wet", wet.uniforms.as_entire_binding()),
+                ("droplets", droplets),
+                ("draw_args", draw_args),
+                ("wet_latest", wet.latest.as_entire_binding()),
+                ("wet_levels", wet.levels.as_entire_binding()),
+            ];
+            marking.layout.bind(&frame.gpu.device, &bound)
+        };
+        let groups: Vec<_> = self.droplets.iter().map(of_batch).collect();
+        let mut pass = frame.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&marking.pipeline);
+        pass.set_bind_group(0, frame.view, &[]);
+        for (batch, group) in self.droplets.iter().zip(&groups) {
+            pass.set_bind_group(1, group, &[]);
+            batch.splat(&mut pass);
+        }
+    }
+
     fn shade(&self, layers: &Layers, frame: &mut Through<'_>) {
         let read = [self.surface(layers), &layers.normals, &layers.thickness, &layers.flow].map(whole);
         let [distances, normals, thickness, flow] = read.each_ref().map(TextureView);
@@ -186,6 +215,9 @@ impl Fluid {
             ("behind_depth", TextureView(frame.behind_depth)),
             ("linear", Sampler(&self.painter.sampler)),
             ("shaded", TextureView(&shaded)),
+            ("wet", self.wet_ground.uniforms.as_entire_binding()),
+            ("wet_latest", self.wet_ground.latest.as_entire_binding()),
+            ("wet_levels", self.wet_ground.levels.as_entire_binding()),
         ];
         run(&self.painter.shading, &bound, layers.size, frame);
     }
@@ -196,6 +228,11 @@ impl Fluid {
             ("fluid", self.settings.as_entire_binding()),
             ("distances", TextureView(&distances)),
             ("shaded", TextureView(&shaded)),
+            ("behind_colour", TextureView(frame.behind_colour)),
+            ("behind_depth", TextureView(frame.behind_depth)),
+            ("wet", self.wet_ground.uniforms.as_entire_binding()),
+            ("wet_latest", self.wet_ground.latest.as_entire_binding()),
+            ("wet_levels", self.wet_ground.levels.as_entire_binding()),
         ];
         let group = self.painter.composed.bind(&frame.gpu.device, &bound);
         let mut pass = frame.begin("composing");

@@ -46,7 +46,7 @@ fn draw(skipped: Option<FluidPass>) -> Option<Image> {
     let stage = Stage::new([-1.0, -1.0, -0.3], [1.0, 1.0, 0.5]);
     let camera = Camera::orbit(&stage, [-1.4, 0.5], 0.6, 1.6, 0.0);
     let style = FluidStyle { absorption: [1.4, 0.5, 0.4], exponent: 60.0, ..FluidStyle::water(0.05) };
-    let mut fluid = FluidPainter::new(&renderer).fluid(&gpu, &stage, style);
+    let mut fluid = FluidPainter::new(&renderer).fluid(&gpu, &stage, style).unwrap();
     fluid.skipped = skipped;
     fluid.fill(&gpu, droplets());
     let ground = [([0.3, 0.3, 0.0], 0.3, 0.9), ([-0.4, -0.2, -0.3], 0.25, 0.6), ([0.0, 0.0, -30.25], 30.0, 0.8)];

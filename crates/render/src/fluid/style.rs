@@ -6,6 +6,9 @@ use crate::shared::FluidUniforms;
 /// m/s2.
 pub(crate) const GRAVITY: f64 = 9.81;
 
+/// Bare ground in the sun looks dry after about an hour, s.
+const DRYING: f64 = 1800.0;
+
 /// Smoothing of the nearest surface of the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Smoothing {
@@ -47,6 +50,10 @@ pub struct FluidStyle {
     pub ripple: f64,
     /// Steepness of the ripples of fast water: 0 draws none.
     pub steepness: f32,
+    /// Cells in which it is noted which ground was under water, m.
+    pub wet_cell: f64,
+    /// Time in which wet ground loses all but 1 / e of its darkness, s.
+    pub drying: f64,
     /// South-western and north-eastern corner, m, beyond which it is not drawn: where the ground is cut off, water is too.
     pub within: Option<[[f64; 2]; 2]>,
 }
@@ -68,6 +75,8 @@ impl FluidStyle {
             foam: 1.5,
             ripple: 6.0 * radius,
             steepness: 0.12,
+            wet_cell: 1.4 * radius,
+            drying: DRYING,
             within: None,
         }
     }

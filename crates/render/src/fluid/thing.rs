@@ -2,6 +2,7 @@
 
 use super::droplet::Batch;
 use super::layers::{Layers, Splats};
+use super::wet_ground::WetGround;
 use super::{DeviceWater, Droplet, FluidPainter, FluidPass, FluidStyle};
 use crate::buffer::uniform;
 use crate::shared::{Direction, DropletInstance};
@@ -24,6 +25,7 @@ pub struct Fluid {
     pub(super) along_rows: wgpu::Buffer,
     pub(super) along_columns: wgpu::Buffer,
     pub(super) droplets: Vec<Batch>,
+    pub(super) wet_ground: WetGround,
     layers: Option<Layers>,
     /// True where compute shaders draw the particles.
     splats: bool,
@@ -35,8 +37,9 @@ pub struct Fluid {
 }
 
 impl Fluid {
-    pub(super) fn new(painter: FluidPainter, gpu: &Gpu, stage: Stage, style: FluidStyle) -> Self {
-        Self {
+    pub(super) fn new(painter: FluidPainter, gpu: &Gpu, stage: Stage, style: FluidStyle) -> Result<Self, RenderError> {
+        let wet_ground = WetGround::new(gpu, &stage, style.wet_cell, style.rounding, style.drying)?;
+        Ok(Self {
             painter,
             stage,
             style,
@@ -44,12 +47,13 @@ impl Fluid {
             along_rows: uniform(gpu, "along rows", &Direction { step: [1, 0], unused: [0; 2] }),
             along_columns: uniform(gpu, "along columns", &Direction { step: [0, 1], unused: [0; 2] }),
             droplets: Vec::new(),
+            wet_ground,
             layers: None,
             splats: false,
             times: None,
             #[cfg(test)]
             skipped: None,
-        }
+        })
     }
 
     /// Replaces the particles. Those without finite position are left out.
@@ -58,9 +62,11 @@ impl Fluid {
         self.droplets = all.chunks(MOST).map(|part| Batch::counted(gpu, part)).collect();
     }
 
-    /// Sets the time of the picture, s: ripples have moved with the water since.
+    /// Sets the time of the picture, s: ripples have moved with the water since, and ground has dried. A time before that of the last picture
+    /// makes all ground dry that is not under water.
     pub fn set_time(&mut self, gpu: &Gpu, time: f64) {
         gpu.queue.write_buffer(&self.settings, 0, bytemuck::bytes_of(&self.style.uniforms(&self.stage, time)));
+        self.wet_ground.set_time(gpu, time);
     }
 
     /// Replaces the particles by water in GPU memory, in its state when the picture is drawn.

@@ -127,7 +127,7 @@ impl Scene {
         let renderer = Renderer::new(gpu);
         let water = FluidStyle::water(BALL);
         let style = FluidStyle { smoothing, range: ranges * water.range, ..water };
-        let mut fluid = FluidPainter::new(&renderer).fluid(gpu, &stage(), style);
+        let mut fluid = FluidPainter::new(&renderer).fluid(gpu, &stage(), style).unwrap();
         fluid.fill(gpu, self.droplets.iter().copied());
         let target = Target::new(gpu, SIZE, 1).unwrap();
         renderer.draw(&target, &stage(), &camera(), &Light::day(), &mut [&mut fluid as &mut dyn Drawable], None);

@@ -153,7 +153,7 @@ fn the_water_at_the_borders_has_the_faces_that_the_cpu_finds() {
 
 fn picture(gpu: &Gpu, fill: impl FnOnce(&mut crate::Fluid)) -> Image {
     let renderer = Renderer::new(gpu);
-    let mut fluid = FluidPainter::new(&renderer).fluid(gpu, &stage(), FluidStyle::water(0.5));
+    let mut fluid = FluidPainter::new(&renderer).fluid(gpu, &stage(), FluidStyle::water(0.5)).unwrap();
     fill(&mut fluid);
     let target = Target::new(gpu, [320, 200], 1).unwrap();
     let camera = Camera::orbit(&stage(), [-1.2, 0.6], 0.6, 1.6, 0.0);

@@ -1,0 +1,10 @@
+// The record of ground that was under water, on a grid over what is shown: when it was last, and how high the water stood.
+// Declares its parameters and, where a shader reads it, what `wetness` needs.
+
+// A height as a number that grows with it, for atomicMax: heights on a stage are above -LOWEST.
+const LOWEST: f32 = 4.0;
+
+// The position of a place on the grid: middles of cells are at .5.
+fn on_wet_grid(place: vec2f) -> vec2f {
+    return (place - wet.corner) * wet.per_unit;
+}
