@@ -1,6 +1,6 @@
 //! The arguments of the command line.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use corpuscle::output::FrameFormat;
 use corpuscle::pictures::Sun;
 use corpuscle::terrain::MapBox;
@@ -215,6 +215,7 @@ impl From<Frames> for FrameFormat {
 }
 
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("of_a_film").args(["film", "film_to"]).multiple(true))]
 pub struct RenderOptions {
     /// The folder of a run
     #[arg(value_name = "RUN")]
@@ -228,11 +229,11 @@ pub struct RenderOptions {
     /// Make a film of every frame, RUN/film.mp4, instead of pictures
     #[arg(long, conflicts_with_all = ["at", "all"])]
     pub film: bool,
-    /// File of the film, .mp4 or .gif, or a folder for PNG files [default: RUN/film.mp4]
-    #[arg(long, value_name = "PATH", requires = "film")]
+    /// Make a film with this name, .mp4 or .gif, or a folder of PNG files [default: RUN/film.mp4]
+    #[arg(long, value_name = "PATH", conflicts_with_all = ["at", "all"])]
     pub film_to: Option<PathBuf>,
     /// Frames per second of the film
-    #[arg(long, value_name = "N", default_value = "10", requires = "film")]
+    #[arg(long, value_name = "N", default_value = "10", requires = "of_a_film")]
     pub rate: f64,
     /// Width and height of the pictures, pixels
     #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "1920x1080")]
@@ -244,6 +245,13 @@ pub struct RenderOptions {
     pub picture: PictureOptions,
     #[command(flatten)]
     pub figure: FigureOptions,
+}
+
+impl RenderOptions {
+    /// Whether a film is made in place of pictures.
+    pub fn is_film(&self) -> bool {
+        self.film || self.film_to.is_some()
+    }
 }
 
 /// The options of `corpuscle render` for pictures in a paper.

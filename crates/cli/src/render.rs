@@ -40,7 +40,7 @@ pub fn render(options: &RenderOptions, as_json: bool) -> Result<ExitCode> {
     refuse_film_of(options)?;
     let mut drawing = Drawing::open(options)?;
     tell!("drawing on {}", drawing.runs[0].pictures.device());
-    if options.film {
+    if options.is_film() {
         return film(options, &mut drawing, as_json);
     }
     let mut drawn = Vec::new();
@@ -59,11 +59,11 @@ pub fn render(options: &RenderOptions, as_json: bool) -> Result<ExitCode> {
 
 /// Refuses what a film cannot show.
 fn refuse_film_of(options: &RenderOptions) -> Result<()> {
-    if options.film && options.figure.overlay == OverlayKind::Vector {
+    if options.is_film() && options.figure.overlay == OverlayKind::Vector {
         return Err(refuse("a film has no vectors: --overlay drawn or none"));
     }
     let is_folder = options.film_to.as_deref().is_some_and(|file| Format::of(file) == Format::Png);
-    if options.film && options.figure.transparent && !is_folder {
+    if options.is_film() && options.figure.transparent && !is_folder {
         return Err(refuse("a film file has no transparent pixels: --film-to FOLDER writes its pictures as PNG files"));
     }
     Ok(())

@@ -36,7 +36,7 @@ fn a_finished_run_is_filmed_to_where_one_wants() {
     let place = Place::new();
     place.write("lake.toml", LAKE);
     place.run(&["run", "lake.toml"]).expect_status(0);
-    let film = ["render", "runs/lake-1", "--film", "--size", "65x48", "--rate", "5", "--film-to"];
+    let film = ["render", "runs/lake-1", "--size", "65x48", "--rate", "5", "--film-to"];
     place.run(&[&film[..], &["lake.mp4"]].concat()).expect_status(0);
     if let Some(probed) = ffprobe::read(&place.path("lake.mp4")) {
         assert_eq!((probed.size, probed.pictures), ([66, 48], 3));

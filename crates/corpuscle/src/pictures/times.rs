@@ -58,6 +58,7 @@ fn name(pass: FluidPass) -> &'static str {
         FluidPass::Thickness => "water's thickness",
         FluidPass::Smoothing => "smoothing",
         FluidPass::Normals => "normals",
+        FluidPass::Wetting => "wetting",
         FluidPass::Shading => "shading",
         FluidPass::Composing => "composing",
     }

@@ -7,9 +7,6 @@
 @group(1) @binding(2) var shaded: texture_2d<f32>;
 @group(1) @binding(3) var behind_colour: texture_2d<f32>;
 @group(1) @binding(4) var behind_depth: texture_depth_2d;
-@group(1) @binding(5) var<uniform> wet: WetGround;
-@group(1) @binding(6) var<storage, read> wet_latest: array<u32>;
-@group(1) @binding(7) var<storage, read> wet_levels: array<u32>;
 
 // Less is not seen.
 const LEAST_DARKER: f32 = 0.004;
@@ -20,8 +17,11 @@ fn fragment(@builtin(position) at: vec4f) -> Drawn {
     let colour = textureLoad(shaded, pixel, 0);
     if colour.a == 0.0 {
         let depth = textureLoad(behind_depth, pixel, 0);
-        let darker = WET * wetness(world_at_pixel(at.xy, max(depth, 1e-6)));
-        if depth == 0.0 || darker < LEAST_DARKER {
+        if depth == 0.0 {
+            discard;
+        }
+        let darker = WET * wetness(world_at_pixel(at.xy, depth));
+        if darker < LEAST_DARKER {
             discard;
         }
         return Drawn(vec4f(textureLoad(behind_colour, pixel, 0).rgb * (1.0 - darker), 1.0), depth);

@@ -12,9 +12,6 @@
 // Colour; 0 in the last where there is nothing to draw.
 @group(1) @binding(7) var shaded: texture_storage_2d<rgba16float, write>;
 @group(1) @binding(8) var flow: texture_2d<f32>;
-@group(1) @binding(9) var<uniform> wet: WetGround;
-@group(1) @binding(10) var<storage, read> wet_latest: array<u32>;
-@group(1) @binding(11) var<storage, read> wet_levels: array<u32>;
 
 // Refractive index of air over that of water, and what water mirrors of light that falls straight on it.
 const AIR_OVER_WATER_INDEX: f32 = 1.0 / 1.333;
@@ -78,9 +75,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let uv = (vec2f(pixel) + 0.5) / view.frame.xy;
     let matter = textureSampleLevel(thickness, linear, uv, 0.0);
+    let covered = smoothstep(SHORE.x, SHORE.y, matter.a);
     let ground_depth = textureLoad(behind_depth, pixel, 0);
-    let soaked = wetness(world_at_pixel(vec2f(pixel) + 0.5, max(ground_depth, 1e-6)));
-    let damp = max(select(soaked, 0.0, ground_depth == 0.0), smoothstep(0.01, 0.5 * SHORE.x, matter.a));
+    var damp = smoothstep(0.01, 0.5 * SHORE.x, matter.a);
+    if covered < 1.0 && ground_depth > 0.0 {
+        damp = max(damp, wetness(world_at_pixel(vec2f(pixel) + 0.5, ground_depth)));
+    }
     let beside = textureLoad(behind_colour, pixel, 0).rgb * (1.0 - WET * damp);
     let velocity = textureSampleLevel(flow, linear, uv, 0.0).xy / max(matter.a, 1e-3);
     let patterns = carried(place.xy, velocity / view.frame.z);
@@ -115,7 +115,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let down = max(dot(refract(-view.sun.xyz, normal, AIR_OVER_WATER_INDEX), -normal), 0.3);
     let left = exp(-fluid.absorption.rgb * (path + path * steep / down));
     let daylight = view.sunlight.rgb * max(dot(normal, view.sun.xyz), 0.0) * shine * 0.4 + light_from_all_round(normal.z);
-    let inner = ground * left + fluid.colour.rgb * daylight * (1.0 - left);
+    // Where water is so thin that all light goes through, its bed is as dark as wet ground beside it.
+    let bed_seen = ground * left * (1.0 - WET * left);
+    let inner = bed_seen + fluid.colour.rgb * daylight * (1.0 - left);
 
     let fresnel = mirrored(cosine, STRAIGHT) * closed;
     let back = reflect(-to_eye, normal);
@@ -134,6 +136,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         colour = mix(colour, matt(vec3f(0.9), normal, shine), clamp(white * closed, 0.0, 0.95));
     }
     colour = hazed(colour, place);
-    let covered = smoothstep(SHORE.x, SHORE.y, matter.a);
     textureStore(shaded, pixel, vec4f(mix(beside, colour, covered), 1.0));
 }

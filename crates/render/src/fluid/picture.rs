@@ -101,7 +101,8 @@ fn the_same_particles_give_the_same_picture() {
 
 #[test]
 fn no_pass_can_be_left_out() {
-    for pass in FluidPass::ALL {
+    // What is wet now is seen in the next picture: see `ground_that_was_under_water_is_darker_until_it_has_dried`.
+    for pass in FluidPass::ALL.into_iter().filter(|pass| *pass != FluidPass::Wetting) {
         let Some(image) = draw(Some(pass)) else { return };
         let difference = difference(&image, &read(&reference()));
         println!("without {pass:?}: {difference:.1}");

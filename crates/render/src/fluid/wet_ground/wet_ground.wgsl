@@ -1,5 +1,7 @@
 // The record of ground that was under water, on a grid over what is shown: when it was last, and how high the water stood.
-// Declares its parameters and, where a shader reads it, what `wetness` needs.
+#import declared
+
+@group(1) @binding(9) var<uniform> wet: WetGround;
 
 // A height as a number that grows with it, for atomicMax: heights on a stage are above -LOWEST.
 const LOWEST: f32 = 4.0;

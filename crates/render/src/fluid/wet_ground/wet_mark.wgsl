@@ -3,12 +3,11 @@
 #import view
 #import wet_ground
 
-@group(1) @binding(0) var<uniform> wet: WetGround;
-@group(1) @binding(1) var<storage, read> droplets: array<DropletInstance>;
+@group(1) @binding(0) var<storage, read> droplets: array<DropletInstance>;
 // How many there are, at SPLAT_COUNT.
-@group(1) @binding(2) var<storage, read> draw_args: array<u32>;
-@group(1) @binding(3) var<storage, read_write> wet_latest: array<atomic<u32>>;
-@group(1) @binding(4) var<storage, read_write> wet_levels: array<atomic<u32>>;
+@group(1) @binding(1) var<storage, read> draw_args: array<u32>;
+@group(1) @binding(10) var<storage, read_write> wet_latest: array<atomic<u32>>;
+@group(1) @binding(11) var<storage, read_write> wet_levels: array<atomic<u32>>;
 
 @compute @workgroup_size(SPLAT_GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
