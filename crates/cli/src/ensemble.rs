@@ -96,7 +96,8 @@ fn finish(folder: &Folder, members: &[usize], written: Option<&Written>, as_json
     }
     tell!("{finished} of {} members are finished, {failed} failed", members.len());
     if let Some(Written { folder, report, maps }) = written {
-        tell!("{maps} maps and tables in {}, report in {}", folder.display(), report.display());
+        let maps = if *maps == 0 { String::new() } else { format!(" and {maps} maps") };
+        tell!("tables{maps} in {}, report in {}", folder.display(), report.display());
     }
     if as_json {
         let report = written.map(|written| written.report.as_path());

@@ -42,6 +42,7 @@ pub fn open_on(processes: &Processes, scene: &written::Dew, seed: u64, folder: &
     // A file may be missing for one of several processes only.
     let bodies = processes.agree(bodies::open(scene, folder).map_err(ModelError::from), ModelError::Setup)?;
     let start = humid_air(&scene.air);
+    check_mixing_ratios(scene, &start)?;
     let room = room(scene, &start);
     refuse_solids_at_inlets(&bodies, &room, scene.spacing_m)?;
     let air = properties(scene, &start, &room, &bodies);
@@ -164,6 +165,39 @@ fn air_of(celsius: f64, pressure: f64, measures: [Option<f64>; 3]) -> Option<Hum
     let dew_point = dew_point.map(|point| HumidAir::with_dew_point(temperature, pressure, point + ZERO_CELSIUS));
     let mixing = mixing.map(|ratio| HumidAir::with_mixing_ratio(temperature, pressure, ratio));
     relative.or(dew_point).or(mixing)
+}
+
+/// Refuses mixing ratios, at the start and of inflows, above that of saturated air.
+fn check_mixing_ratios(scene: &written::Dew, start: &HumidAir) -> Result<(), ModelError> {
+    if scene.air.mixing_ratio.is_some() {
+        check_humidity("dew.air", start)?;
+    }
+    for axis in Axis::ALL {
+        for (face, name) in scene.faces.along(axis).into_iter().zip(["min", "max"]) {
+            if let written::Face::Inflow(inflow) = face
+                && let Some(ratio) = inflow.mixing_ratio
+            {
+                let temperature = inflow.temperature_c.unwrap_or(scene.air.temperature_c) + ZERO_CELSIUS;
+                let air = HumidAir::with_mixing_ratio(temperature, start.pressure, ratio);
+                check_humidity(&format!("dew.faces.{}_{name}.inflow", ["x", "y", "z"][axis.index()]), &air)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses air that holds more vapour than saturated air: it would be fog already.
+fn check_humidity(key: &str, air: &HumidAir) -> Result<(), ModelError> {
+    let humidity = air.relative_humidity();
+    if humidity <= 1.0 + 1e-9 {
+        return Ok(());
+    }
+    let most = HumidAir::with_relative_humidity(air.temperature, air.pressure, 1.0).mixing_ratio();
+    Err(ModelError::Setup(format!(
+        "{key}.mixing_ratio = {:.6} is more than saturated air at {:.1} °C holds, {most:.6}: such air would be fog already; it is in kg of vapour for a kg of dry air",
+        air.mixing_ratio(),
+        air.temperature - ZERO_CELSIUS,
+    )))
 }
 
 fn humid_air(air: &written::Air) -> HumidAir {

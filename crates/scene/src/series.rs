@@ -188,8 +188,9 @@ fn read_csv(file: &Path) -> Result<Table, SceneError> {
                 rows.push(row);
                 lines.push(index + 1);
             }
-            // Names and units stand above the numbers.
-            None if rows.is_empty() && fields[0].parse::<f64>().is_err() => {}
+            // Names and units stand above the numbers; a line that begins with a digit is a row.
+            None if rows.is_empty()
+                && !fields[0].starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) => {}
             None => {
                 let what = format!("`{}` must be two numbers, time in s and value, with a comma between", line.trim());
                 return Err(error(Some(index + 1), what));

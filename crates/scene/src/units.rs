@@ -123,6 +123,7 @@ fn convert_below(value: &mut Value, given: &Spanned<DeValue<'_>>) {
 fn factors(key: &str) -> Option<[f64; 2]> {
     match key {
         "stage" | "paddle" => Some([1.0, FOOT]),
+        "discharge" => Some([1.0, FOOT * FOOT * FOOT]),
         "rating" => Some([FOOT, FOOT * FOOT * FOOT]),
         // m^(1/2)/s, and s/m.
         "coefficient" | "chezy" => Some([1.0, FOOT.sqrt()]),

@@ -249,6 +249,8 @@ fn feet_become_metres_and_defaults_stay() {
         rain = { intensity_in_per_h = [[0, 1], [9, 2]] }
         infiltration.green-ampt = { conductivity_in_per_h = 1, suction_ft = 2, deficit = 0.5 }
         edges.west = { stage = [[5, 10]] }
+        edges.east = { discharge = [[5, 100]] }
+        edge_part = [{ side = "north", from = 1, to = 2, edge = { discharge = { csv = "q.csv" } } }]
         water = [{ depth_ft = 2, polygon = [[0, 0], [1, 0], [1, 1]], velocity_ft_per_s = [1, "x * y"] },
             { level_ft = 1, velocity_ft_per_s = { east = "u.tif", north = "v.tif" } }]
         inflow = [{ name = "a", at = [7, 7], discharge_ft3_per_s = { csv = "q.csv" } }]
@@ -277,6 +279,11 @@ fn feet_become_metres_and_defaults_stay() {
     near(ground.suction_m, 0.6096);
     assert_eq!((ground.conductivity_mm_per_h, ground.deficit), (25.4, 0.5));
     assert_eq!(flood.edges.west, Edge::Stage(Series::Table(vec![[5.0, 3.048]])));
+    let Edge::Discharge(Series::Table(rows)) = &flood.edges.east else { panic!() };
+    near(rows[0][1], 2.8316846592);
+    let Edge::Discharge(Series::File { factor, .. }) = flood.edge_part[0].edge else { panic!() };
+    near(factor, 0.028316846592);
+    assert_eq!((flood.edge_part[0].from, rows[0][0]), (1.0, 5.0));
     assert_eq!(flood.water[0].depth_m, Some(Field::Number(0.6096)));
     let StartVelocity::Components([east, north]) = &flood.water[0].velocity_m_per_s else { panic!() };
     assert_eq!(east.number(), Some(0.3048));

@@ -73,7 +73,11 @@ impl<const D: usize> Gas<D> {
             rows.into_iter().map(|(name, unit, value)| ("gas".into(), name, unit, value)).collect();
         gauges.extend(self.transport_gauges());
         gauges.extend(self.wall_gauges());
-        gauges.extend(self.set_gauges());
+        // A single species may be called `gas` too: what it has in common with the gas is there already.
+        let of_sets = self.set_gauges().into_iter();
+        let of_gas: Vec<&str> = gauges.iter().filter(|gauge| gauge.0 == "gas").map(|gauge| gauge.1).collect();
+        let new: Vec<_> = of_sets.filter(|gauge| gauge.0 != "gas" || !of_gas.contains(&gauge.1)).collect();
+        gauges.extend(new);
         gauges.extend(self.region_gauges(&recent));
         if let Some(followed) = &world.followed {
             gauges.push((format!("ball {}", followed.id), "collisions", "", followed.collisions as f64));

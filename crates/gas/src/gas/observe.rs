@@ -505,12 +505,11 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world();
         let now = world.in_window(time);
         let mut kinetic = CompensatedSum::default();
-        let (mut mass, mut momentum, mut under_way) = (0.0, [0.0; D], 0.0);
+        let (mut mass, mut momentum) = (0.0, [0.0; D]);
         for ball in 0..world.balls.len() {
             let (own, velocity) = (world.mass(ball), world.thermal_velocity(ball, now));
             kinetic.add(0.5 * own * velocity.iter().map(|v| v * v).sum::<f64>());
             mass += own;
-            under_way += speed(&velocity) * (now - world.balls[ball].time);
             for axis in 0..D {
                 momentum[axis] += own * velocity[axis];
             }
@@ -533,7 +532,7 @@ impl<const D: usize> Gas<D> {
             open: open.iter().product(),
             collisions: world.tally.collisions,
             virial: world.tally.virial,
-            path: world.tally.path + under_way,
+            path: world.path_at(now),
             moments: world.moments_at(now),
             walls: world.wall_tallies.iter().map(|tally| tally.momentum.value()).collect(),
             areas: world.walls.iter().map(|wall| area(wall.axis)).collect(),

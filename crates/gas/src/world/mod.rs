@@ -5,6 +5,7 @@ mod collide;
 mod contact;
 mod hit;
 mod moments;
+mod path;
 mod region;
 mod shear;
 mod wall;
@@ -186,13 +187,37 @@ impl<const D: usize> World<D> {
     pub fn book_flight<M: Mode>(&mut self, ball: usize) {
         let Ball { mut velocity, time, kind, .. } = self.balls[ball];
         let flown = self.now - time;
+        self.tally.path += self.path_flown::<M>(ball, self.now);
         if M::SHEARS {
             velocity = self.velocity_in_flight(&self.balls[ball], flown);
         }
-        self.tally.path += speed(&velocity) * flown;
         if let Some(moments) = &mut self.moments {
             moments.fly(self.kinds[kind as usize].mass, &velocity, flown);
         }
+    }
+
+    /// Length of a ball's path since it was moved last, up to a time of the window: in a sheared box that relative to the flow.
+    #[inline(always)]
+    fn path_flown<M: Mode>(&self, ball: usize, time: f64) -> f64 {
+        let ball = &self.balls[ball];
+        let flown = time - ball.time;
+        if M::SHEARS {
+            speed(&self.velocity_in_flight(ball, flown)) * flown
+        } else if M::FALLS {
+            path::length(&ball.velocity, &self.field.gravity, flown)
+        } else {
+            speed(&ball.velocity) * flown
+        }
+    }
+
+    /// Length of the paths of all balls up to a time of the window, with the flights that are under way.
+    pub fn path_at(&self, time: f64) -> f64 {
+        let of_ball = |ball: usize| match (self.field.is_sheared(), self.falls()) {
+            (true, _) => self.path_flown::<contact::Sheared>(ball, time),
+            (false, true) => self.path_flown::<contact::Falling>(ball, time),
+            (false, false) => self.path_flown::<contact::Straight>(ball, time),
+        };
+        self.tally.path + (0..self.balls.len()).map(of_ball).sum::<f64>()
     }
 
     /// The moments at a time of the window, with the flights that are under way.

@@ -23,6 +23,26 @@ fn pressure_and_collision_rate_of_a_fluid_are_those_known() {
     assert!(inside);
 }
 
+/// Flights that gravity bends: a ball flies as far between collisions as its mean speed over its collision rate, and none flies less far than nothing.
+#[test]
+fn paths_bent_by_gravity_are_as_long_as_the_mean_speed_says() {
+    let mut setup = Setup::<2>::new([60.0, 60.0]).measured(40.0, 0.5);
+    setup.gravity = [0.0, -0.1];
+    let mut gas = setup.species(Species::new("gas", Amount::Count(300))).build().unwrap();
+    let path = gas.gauge_columns().iter().position(|column| column.quantity == "mean_free_path").unwrap();
+    let mut temperature = 0.0;
+    for time in 1..=400 {
+        advance(&mut gas, f64::from(time));
+        let row = gas.gauge_row()[path];
+        assert!(row.is_nan() || row > 0.0, "{row} at {time}");
+        temperature += if time > 40 { gas.temperature() / 360.0 } else { 0.0 };
+    }
+    // Of Maxwell's speeds in the plane.
+    let mean_speed = (0.5 * std::f64::consts::PI * temperature).sqrt();
+    let found = gas.mean_free_path().mean * gas.collision_rate().mean;
+    assert!((found / mean_speed - 1.0).abs() < 0.01, "{found} {mean_speed}");
+}
+
 #[test]
 fn virial_and_walls_tell_the_same_pressure() {
     let mut setup = Setup::<2>::new([60.0, 60.0]).measured(20.0, 1.0);

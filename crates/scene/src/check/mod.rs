@@ -42,6 +42,11 @@ pub fn is_name(name: &str) -> bool {
     !name.trim().is_empty() && name.chars().all(fits)
 }
 
+/// Whether two names make the same name of a file, in which spaces are `_`.
+fn is_same_file(one: &str, other: &str) -> bool {
+    one.replace(' ', "_") == other.replace(' ', "_")
+}
+
 /// Checks of a scene's values, which messages show by their keys, as in `"gas.species.0.count"`.
 pub struct Check {
     values: Value,

@@ -2,10 +2,13 @@
 
 use super::{Raster, read_raster};
 use crate::frame::Frame;
-use crate::{Terrain, TerrainError};
+use crate::{Bounds, Terrain, TerrainError};
 use proj4rs::Proj;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Steps along each side of a terrain between positions at which it is found out where a raster lies.
+const SAMPLES: usize = 16;
 
 /// A raster on any grid, evaluated at model coordinates of a terrain.
 #[derive(Debug)]
@@ -21,7 +24,8 @@ impl RasterField {
     /// another one.
     ///
     /// # Errors
-    /// As [`read_raster`], and where it names a system from or to which the terrain's places cannot be converted.
+    /// As [`read_raster`], where it names a system from or to which the terrain's places cannot be converted, and where it lies outside the
+    /// terrain.
     pub fn open(path: impl AsRef<Path>, terrain: &Terrain) -> Result<Self, TerrainError> {
         let path = path.as_ref();
         let raster = read_raster(path)?;
@@ -41,7 +45,27 @@ impl RasterField {
             }
             _ => None,
         };
-        Ok(Self { raster, frame, other })
+        let field = Self { raster, frame, other };
+        if !field.overlaps(&terrain.bounds()) {
+            return Err(TerrainError::unusable(path, "it lies outside the terrain, and would have no effect"));
+        }
+        Ok(field)
+    }
+
+    /// Whether some of its cells may lie within bounds in model coordinates: by the columns and rows of positions all over them.
+    fn overlaps(&self, bounds: &Bounds) -> bool {
+        let Bounds { x_min, x_max, y_min, y_max } = bounds;
+        let along = |low: f64, high: f64, step: usize| low + (high - low) * step as f64 / SAMPLES as f64;
+        let mut reached = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for step in 0..(SAMPLES + 1) * (SAMPLES + 1) {
+            let model = [along(*x_min, *x_max, step % (SAMPLES + 1)), along(*y_min, *y_max, step / (SAMPLES + 1))];
+            let Some(position) = self.position(model) else { continue };
+            for ([low, high], at) in reached.iter_mut().zip(position) {
+                (*low, *high) = (low.min(at), high.max(at));
+            }
+        }
+        let counts = [self.raster.columns, self.raster.rows];
+        reached.iter().zip(counts).all(|([low, high], count)| *low <= count as f64 - 0.5 && *high >= -0.5)
     }
 
     /// Warnings about the file, in sentences.

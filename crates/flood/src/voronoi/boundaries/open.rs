@@ -43,6 +43,26 @@ pub(crate) struct Boundaries {
     now: [Vec<Now>; 2],
 }
 
+/// The coordinate along a side of the terrain, in its own coordinates, to a thousandth.
+fn own_along(terrain: &Terrain, side: usize, along: f64) -> f64 {
+    let [x, y] = terrain.bounds().centre();
+    let own = terrain.to_own(if side < 2 { [x, along] } else { [along, y] });
+    (1000.0 * own[usize::from(side < 2)]).round() / 1000.0
+}
+
+/// Refuses parts of a side that overlap: which boundary condition holds there would not be clear.
+fn check_overlaps(parts: &[Part]) -> Result<(), ModelError> {
+    for (number, part) in parts.iter().enumerate() {
+        let overlaps = |other: &Part| other.side == part.side && other.from < part.to && part.from < other.to;
+        if let Some(other) = parts[..number].iter().position(overlaps) {
+            return Err(setup(format!(
+                "flood.edge_part.{number} overlaps flood.edge_part.{other} on the same side; let one end where the other begins"
+            )));
+        }
+    }
+    Ok(())
+}
+
 impl Boundaries {
     pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
         let edges = &scene.edges;
@@ -55,7 +75,7 @@ impl Boundaries {
             .chain(of_lines)
             .map(|edge| boundary(edge, folder))
             .collect::<Result<_, _>>()?;
-        let part = |part: &corpuscle_scene::EdgePart| {
+        let part = |(number, part): (usize, &corpuscle_scene::EdgePart)| {
             let side = match part.side {
                 Side::West => 0,
                 Side::East => 1,
@@ -68,9 +88,21 @@ impl Boundaries {
                 let own = if side < 2 { [x, value] } else { [value, y] };
                 terrain.to_model(own)[usize::from(side < 2)]
             };
-            Part { side, from: along(part.from), to: along(part.to) }
+            let (from, to) = (along(part.from), along(part.to));
+            let [low, high] = if side < 2 { [bounds.y_min, bounds.y_max] } else { [bounds.x_min, bounds.x_max] };
+            if to <= low || from >= high {
+                return Err(setup(format!(
+                    "flood.edge_part.{number} from {} to {} lies outside its side, which goes from {} to {} in the terrain's coordinates",
+                    part.from,
+                    part.to,
+                    own_along(terrain, side, low),
+                    own_along(terrain, side, high),
+                )));
+            }
+            Ok(Part { side, from, to })
         };
-        let parts = scene.edge_part.iter().map(part).collect();
+        let parts = scene.edge_part.iter().enumerate().map(part).collect::<Result<Vec<Part>, _>>()?;
+        check_overlaps(&parts)?;
         Ok(Self { rules, parts, of_faces: Vec::new(), ground: Vec::new(), now: [Vec::new(), Vec::new()] })
     }
 

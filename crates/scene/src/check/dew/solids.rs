@@ -1,20 +1,26 @@
 //! Checks of `[[dew.solid]]`.
 
-use crate::check::{Check, Checked};
+use crate::check::{Check, Checked, is_same_file};
 use crate::dew::{Dew, Material, Shape, Solid, WineGlass};
 use crate::{Problem, Series};
 
 /// A solid hotter than this glows: most of its heat is light, °C.
 pub(super) const HOTTEST: f64 = 1000.0;
 
+/// Names of gauges that are of no solid.
+const GAUGES: [&str; 4] = ["water", "air", "solids", "drops"];
+
 impl Check {
     pub(super) fn solids(&self, dew: &Dew) -> Checked {
         for (row, solid) in dew.solid.iter().enumerate() {
             let key = format!("dew.solid.{row}");
             self.name(&format!("{key}.name"), &solid.name)?;
-            let before = dew.solid[..row].iter().position(|other| other.name == solid.name);
+            let before = dew.solid[..row].iter().position(|other| is_same_file(&other.name, &solid.name));
             self.require(&format!("{key}.name"), before.is_none(), || {
-                "is the name of another solid too; names must be unique".into()
+                "is the name of another solid too; names must be unique, with spaces as `_`: files have them".into()
+            })?;
+            self.require(&format!("{key}.name"), !GAUGES.contains(&solid.name.as_str()), || {
+                format!("is the name of other gauges; {} are taken", GAUGES.join(", "))
             })?;
             self.shape(&format!("{key}.shape"), &solid.shape)?;
             self.material(&format!("{key}.material"), &solid.material)?;

@@ -206,6 +206,9 @@ impl Check {
     fn paddle(&self, key: &str, motion: &Series) -> Checked {
         self.series(key, motion)?;
         let Series::Table(rows) = motion else { return Ok(()) };
+        self.require(&format!("{key}.0"), rows[0][1] == 0.0, || {
+            "must begin with a displacement of 0: the wall stands at the side of the terrain".into()
+        })?;
         let jump = rows.windows(2).position(|pair| pair[0][0] == pair[1][0] && pair[0][1] != pair[1][1]);
         jump.map_or(Ok(()), |row| {
             Err(self
@@ -334,7 +337,7 @@ impl Check {
         let next = corners.iter().cycle().skip(1);
         let twice_area: f64 =
             corners.iter().zip(next).map(|(a, b)| (a[0] - x0) * (b[1] - y0) - (b[0] - x0) * (a[1] - y0)).sum();
-        self.require(key, twice_area != 0.0, || "a polygon must have an area; its corners are on one line".into())
+        self.require(key, twice_area != 0.0, || "a polygon must have an area: its corners are on one line, or its sides cross and enclose as much to the left as to the right".into())
     }
 
     /// Names are fit for headers of tables and unique.

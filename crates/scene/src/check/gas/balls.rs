@@ -1,6 +1,7 @@
 //! Checks of `[[gas.ball]]` and `[[gas.species]]`.
 
 use super::{CLOSE_PACKING, Check, Checked, MOST_BALLS};
+use crate::check::SIDES;
 use crate::{Axis, Ball, Gas, Problem, Region, Species, Wall};
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -147,12 +148,32 @@ impl Check {
 
     fn species_names(&self, gas: &Gas) -> Checked {
         let mut seen = HashMap::new();
+        let walls: Vec<&str> = SIDES.iter().flatten().copied().collect();
+        let is_alone = gas.species.len() + gas.ball.len() == 1;
         for (index, species) in gas.species.iter().enumerate() {
             let key = format!("gas.species.{index}.name");
-            if let Some(other) = seen.insert(&species.name, key.clone()) {
+            if let Some(other) = seen.insert(species.name.replace(' ', "_"), key.clone()) {
+                let what = format!(" = {:?}: this name is taken by {other}; give another", species.name);
+                return Err(Problem::new(key, what));
+            }
+            // Of a single species the gauges of the gas are its own.
+            let is_free = !walls.contains(&species.name.as_str()) && (is_alone || species.name != "gas");
+            self.require(&key, is_free, || {
+                "is the name of other gauges: those of the gas or of a wall; give another".into()
+            })?;
+        }
+        for (index, ball) in gas.ball.iter().enumerate() {
+            let is_free = ball.name != "gas" && !walls.contains(&ball.name.as_str());
+            let key = format!("gas.ball.{index}.name");
+            self.require(&key, is_free, || {
+                "is the name of other gauges: those of the gas or of a wall; give another".into()
+            })?;
+            let file = ball.name.replace(' ', "_");
+            let other = seen.get(&file).filter(|_| gas.species.iter().all(|species| species.name != ball.name));
+            if let Some(other) = other {
                 return Err(Problem::new(
                     key,
-                    format!(" = {:?}: this name is taken by {other}; give another", species.name),
+                    format!(" = {:?}: this name is taken by {other}; give another", ball.name),
                 ));
             }
         }

@@ -177,6 +177,10 @@ impl Check {
         }
         if let Some(distance) = measure.pair_distance {
             self.above("gas.measure.pair_distance", distance, 0.0)?;
+            let half = 0.5 * gas.size.iter().copied().fold(f64::INFINITY, f64::min);
+            self.require("gas.measure.pair_distance", distance <= half, || {
+                format!("must be at most {half}, half the shortest side of the box")
+            })?;
         }
         self.above("gas.measure.lag_collisions", measure.lag_collisions, 0.0)?;
         self.axis(gas, "gas.measure.profile_axis", measure.profile_axis)?;
