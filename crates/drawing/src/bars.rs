@@ -44,10 +44,15 @@ fn rectangle([x, y]: [f64; 2], [width, height]: [f64; 2]) -> [[f64; 2]; 4] {
     [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
 }
 
+/// Width of a scale bar of a round length, CSS pixels; `scale` is in CSS pixels for a unit of length.
+pub fn scale_bar_width(scale: f64) -> f64 {
+    ticks::step(70.0 / scale, 1) * scale
+}
+
 /// Draws a scale bar of a round length, ending at `[right, top]`; `scale` is in CSS pixels for a unit of length.
 pub fn scale_bar(svg: &mut Svg, scale: f64, unit: &str, [right, top]: [f64; 2]) {
-    let length = ticks::step(70.0 / scale, 1);
-    let width = length * scale;
+    let width = scale_bar_width(scale);
+    let length = width / scale;
     let y = top + 6.0;
     svg.path([[right - width, y - 4.0], [right - width, y + 4.0]], false, "edge");
     svg.path([[right, y - 4.0], [right, y + 4.0]], false, "edge");

@@ -232,6 +232,31 @@ fn what_came_in_is_the_hydrograph_to_the_last_drop() {
     assert!(balance.relative_error().abs() < 1e-13);
 }
 
+/// Gauges of all water are of the time that is asked for, within a step too: thin water takes steps of seconds.
+#[test]
+fn totals_are_those_of_the_time_shown() {
+    let keys = format!(
+        "spacing_m = 3\n{WALLS}rain.intensity_mm_per_h = 36\ninflow = [{{ name = \"a\", at = [50, 15], discharge_m3_per_s = 0.01 }}]"
+    );
+    let mut flood = basin(&keys, 3, |x, _| 0.01 * x).unwrap();
+    let (rain, inflow, area) = (36.0 / 3.6e6, 0.01, 66.0 * 30.0);
+    let of = |flood: &VoronoiFlood, quantity: &str| {
+        flood.gauge_row()[flood.gauge_columns().iter().position(|column| column.quantity == quantity).unwrap()]
+    };
+    for time in [0.1, 0.37, 1.0, 2.9, 7.3, 7.4, 25.0] {
+        go(&mut flood, time);
+        let exact = [rain * area * time, (rain * area + inflow) * time, (rain * area + inflow) * time];
+        let found = ["total_rain", "total_inflow", "stored"].map(|quantity| of(&flood, quantity));
+        for (found, exact) in found.iter().zip(exact) {
+            assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact} at {time}");
+        }
+        let [energy, came, went, dissipated] =
+            ["energy", "energy_in", "energy_out", "dissipated"].map(|quantity| of(&flood, quantity));
+        assert!((came - went - energy - dissipated).abs() < 1e-9 * came && dissipated > -1e-6 * came, "at {time}");
+    }
+    assert!(flood.time_step() > 0.2, "too short a step for this test: {}", flood.time_step());
+}
+
 /// Rough ground, islands, three seeds, both ways to store: a lake held at its level at one side, open at another, stays as it is.
 #[test]
 fn a_lake_at_rest_stays_at_rest_at_every_kind_of_side() {

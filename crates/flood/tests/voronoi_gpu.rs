@@ -332,6 +332,23 @@ fn water_comes_and_goes_beside_its_motion() {
 
 /// Outflows, held levels, culverts, weirs and ratings, on patches of several cells and of one, some of which overlap.
 #[test]
+fn totals_are_those_of_the_time_shown() {
+    let Some(gpu) = require_gpu("totals on the GPU") else { return };
+    let keys = format!(
+        "spacing_m = 3\n{WALLS}rain.intensity_mm_per_h = 36\ninflow = [{{ name = \"a\", at = [50, 15], discharge_m3_per_s = 0.01 }}]"
+    );
+    let open = || basin(&keys, [66.0, 30.0], |x, _| 0.01 * x);
+    for time in [0.37, 2.9, 7.3] {
+        let floods = both(gpu.clone(), time, open);
+        for quantity in ["total_rain", "total_inflow", "stored", "energy", "energy_in", "dissipated"] {
+            let [cpu, gpu] = floods.each_ref().map(|flood| value(flood, quantity));
+            let least = if quantity == "dissipated" { value(&floods[0], "energy_in") } else { cpu };
+            assert!((gpu - cpu).abs() < 2e-4 * least.abs(), "{quantity} {gpu} {cpu} at {time}");
+        }
+    }
+}
+
+#[test]
 fn structures_lead_water() {
     let Some(gpu) = require_gpu("structures on the GPU") else { return };
     let outflow = "outflow = [{ name = \"drain\", polygon = [[5, 5], [15, 5], [15, 15], [5, 15]], rating = [[200, 0], [201, 3], [203, 10]] }]\n";

@@ -1,7 +1,7 @@
 //! What gauges measure.
 
 use super::domain::total;
-use super::{DENSITY, State, VoronoiFlood};
+use super::{BOOKED, DENSITY, State, VoronoiFlood};
 use crate::gauges::{LineGauge, PointGauge};
 use crate::obstacles::force_columns;
 use crate::sampling::Sample;
@@ -47,14 +47,29 @@ impl VoronoiFlood {
             of_lines = rest;
         }
         row.extend(self.state.flows.row());
+        let share = self.share_shown();
+        // From the time shown to the end of the step.
+        let rest = (1.0 - share) * (self.state.time - self.state.before);
         let of_obstacles = self.state.forces.iter().zip(&self.state.impulses);
-        row.extend(of_obstacles.flat_map(|(force, sum)| [*force, *sum]).flatten().map(|push| DENSITY * push));
-        let ([water, _, account], soaked) = self.booked();
-        row.extend([self.stored(), water.inflow.value(), water.outflow.value()]);
-        let (energy, came, went) = (self.energy(0.0).iter().sum(), account.inflow.value(), account.outflow.value());
-        row.extend([energy, came, went, account.initial + came - went - energy]);
+        let pushes = of_obstacles.flat_map(|(force, sum)| [*force, [0, 1].map(|axis| sum[axis] - rest * force[axis])]);
+        row.extend(pushes.flatten().map(|push| DENSITY * push));
+        let [booked, before] = [self.state.booked(), self.state.booked_before].map(|sums| self.in_all(sums));
+        let booked = booked.map(|sum| sum.value());
+        let before = before.map(|sum| sum.value());
+        // As the water at the positions of gauges is: in between, where the time shown is within a step.
+        let at_end = share == 1.0;
+        let shown: [f64; BOOKED] =
+            std::array::from_fn(|k| if at_end { booked[k] } else { between(before[k], booked[k], share) });
+        let [came, went, energy_in, energy_out, rained, infiltrated] = shown;
+        let to_come = (booked[0] - came) - (booked[1] - went);
+        row.extend([self.stored() - to_come, came, went]);
+        let mut energy: f64 = self.energy(0.0).iter().sum();
+        if !at_end {
+            energy = between(self.energy_of(self.solver.before(), 0.0).iter().sum(), energy, share);
+        }
+        row.extend([energy, energy_in, energy_out, self.state.energy.initial + energy_in - energy_out - energy]);
         if self.weather.is_some() {
-            row.extend(soaked.map(|sum| sum.value()));
+            row.extend([rained, infiltrated]);
         }
         row.extend(rows.flatten());
         row
@@ -79,6 +94,12 @@ impl VoronoiFlood {
         samples
     }
 
+    /// Sums of all processes.
+    pub(super) fn in_all(&self, mut sums: [ExactSum; BOOKED]) -> [ExactSum; BOOKED] {
+        total(self.solver.domain.as_ref(), &mut [], &mut sums.iter_mut().collect::<Vec<_>>());
+        sums
+    }
+
     /// The accounts of water, momentum and energy, and the rain and what soaked in, m3: of all processes.
     pub(super) fn booked(&self) -> ([Account; 3], [ExactSum; 2]) {
         let State { water, momentum, energy, soaked, .. } = &self.state;
@@ -88,4 +109,9 @@ impl VoronoiFlood {
         total(self.solver.domain.as_ref(), &mut [], &mut of_accounts.chain(&mut of_weather).collect::<Vec<_>>());
         (accounts, of_weather)
     }
+}
+
+/// Linear from one value to another.
+fn between(from: f64, to: f64, share: f64) -> f64 {
+    from + share * (to - from)
 }

@@ -156,6 +156,8 @@ struct State {
     momentum: Account,
     /// Energy of the water on the ground above the level 0, J; what friction, waves that break and the scheme take is not booked.
     energy: Account,
+    /// What [`State::booked`] was before the last step.
+    booked_before: [ExactSum; BOOKED],
     /// Momentum that each obstacle took up so far, over density, m4/s, and a second in the last step, m4/s2.
     impulses: Vec<[f64; 2]>,
     forces: Vec<[f64; 2]>,
@@ -165,6 +167,17 @@ struct State {
     blocks: Vec<(u32, u8)>,
     /// How often the cells were remade.
     remakes: u64,
+}
+
+/// Number of sums in [`State::booked`].
+const BOOKED: usize = 6;
+
+impl State {
+    /// What came in and went out of water, m3, and of energy, J; rain, and what soaked in, m3.
+    fn booked(&self) -> [ExactSum; BOOKED] {
+        let Self { water, energy, soaked, .. } = self;
+        [water.inflow, water.outflow, energy.inflow, energy.outflow, soaked.rained, soaked.infiltrated]
+    }
 }
 
 impl VoronoiFlood {
@@ -210,9 +223,14 @@ impl VoronoiFlood {
 
     /// Kinetic and potential energy of the water, J, the latter above a level, m. Where several processes share the flood all of them call this.
     pub fn energy(&self, level: f64) -> [f64; 2] {
+        self.energy_of(&self.solver.columns, level)
+    }
+
+    /// The same of other columns of the cells.
+    fn energy_of(&self, columns: &[Column], level: f64) -> [f64; 2] {
         let mesh = &self.solver.mesh;
         let gravity = self.solver.gravity;
-        let columns = self.own_columns();
+        let columns = columns.iter().enumerate().filter(|(cell, _)| self.solver.owns(*cell));
         let mut kinetic = columns.clone().map(|(_, column)| column.kinetic()).collect::<ExactSum>();
         let potential =
             columns.map(|(cell, column)| gravity * (mesh.potential(cell, column.volume) - level * column.volume));
@@ -232,10 +250,15 @@ impl VoronoiFlood {
         DENSITY * domain::total_of(self.solver.domain.as_ref(), self.own_columns().map(of_cell).collect())
     }
 
+    /// How far the time shown is from the begin of the last step, 0, to its end, 1.
+    fn share_shown(&self) -> f64 {
+        let State { time, before, .. } = &self.state;
+        if time > before { ((self.shown - before) / (time - before)).clamp(0.0, 1.0) } else { 1.0 }
+    }
+
     /// The water of a cell at the time shown.
     fn water_shown(&self, cell: usize) -> Water {
-        let State { time, before, .. } = &self.state;
-        let share = if time > before { ((self.shown - before) / (time - before)).clamp(0.0, 1.0) } else { 1.0 };
+        let share = self.share_shown();
         if share == 1.0 {
             return self.solver.water[cell];
         }

@@ -208,6 +208,7 @@ impl VoronoiFlood {
             beyond: Vec::new(),
             falling: Vec::new(),
             soaked: Soaked::default(),
+            booked_before: Default::default(),
             flows: structures.at_rest(),
             impulses: vec![[0.0; 2]; settings.obstacle.len()],
             forces: vec![[0.0; 2]; settings.obstacle.len()],

@@ -63,6 +63,7 @@ impl VoronoiFlood {
         self.balance_load_when_due()?;
         let (from, step) = (self.state.time, self.state.time_step);
         let until = from + step;
+        let booked = self.state.booked();
         self.move_water(from, step);
         if self.solver.is_broken() {
             return Err(self.breakdown(from));
@@ -76,6 +77,7 @@ impl VoronoiFlood {
             self.make_tiles(missing)?;
         }
         (self.state.before, self.state.time) = (from, until);
+        self.state.booked_before = booked;
         let step = self.solver.plan();
         self.state.time_step = self.limit_time_step(step);
         Ok(())

@@ -60,11 +60,32 @@ fn draw_column(page: &mut Page<'_>, entries: &[Entry<'_>], [left, mut top]: [f64
     }
 }
 
-fn draw_row(page: &mut Page<'_>, entries: &[Entry<'_>], [mut left, top]: [f64; 2]) {
-    for entry in entries {
-        entry.draw(page, [left, top], true);
-        left += GAP + entry.width() + if let Entry::Values(name, _) = entry { wide(name) } else { 0.0 };
+/// Draws entries side by side from a corner on, or, where they are too wide for that, in as many rows as they need, over the whole width of the page.
+fn draw_row(page: &mut Page<'_>, entries: &[Entry<'_>], [left, top]: [f64; 2]) {
+    let widths: Vec<f64> = entries.iter().map(Entry::width_in_row).collect();
+    let is_one_row = left + widths.iter().sum::<f64>() + GAP * (widths.len() - 1) as f64 <= page.size[0] - MARGIN;
+    let left = if is_one_row { left } else { MARGIN };
+    let rows = rows(&widths, page.size[0] - MARGIN - left);
+    let last = rows.iter().map(|(row, _)| *row).max().unwrap_or(0) as f64;
+    // The last row is above the end of the page.
+    let top = top.min(HEIGHT - ROW * (last + 1.0) - 4.0);
+    for (entry, (row, from)) in entries.iter().zip(rows) {
+        entry.draw(page, [left + from, top + ROW * row as f64], true);
     }
+}
+
+/// Row and begin of entries of these widths in rows of a length.
+fn rows(widths: &[f64], length: f64) -> Vec<(usize, f64)> {
+    let (mut row, mut from) = (0, 0.0);
+    let place = |width: &f64| {
+        if from > 0.0 && from + width > length {
+            (row, from) = (row + 1, 0.0);
+        }
+        let place = (row, from);
+        from += width + GAP;
+        place
+    };
+    widths.iter().map(place).collect()
 }
 
 /// Width of a name.
@@ -88,6 +109,12 @@ impl Entry<'_> {
         }
     }
 
+    /// Width in a row, where the name of values stands before their bar.
+    fn width_in_row(&self) -> f64 {
+        let name = if let Self::Values(name, _) = self { wide(name) } else { 0.0 };
+        self.width() + name
+    }
+
     /// Draws it from a position on; in a row the name of values stands before their bar, in a column above it.
     fn draw(&self, page: &mut Page<'_>, [left, top]: [f64; 2], in_a_row: bool) {
         let name_at = |from: f64| [from + TO_NAME, top + 13.0];
@@ -108,5 +135,18 @@ impl Entry<'_> {
                 page.svg.text(name_at(left + SAMPLE), Anchor::Start, "over", name);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_that_do_not_fit_begin_a_row() {
+        assert_eq!(rows(&[100.0, 100.0, 100.0], 400.0), [(0, 0.0), (0, 130.0), (0, 260.0)]);
+        assert_eq!(rows(&[100.0, 100.0, 100.0], 300.0), [(0, 0.0), (0, 130.0), (1, 0.0)]);
+        // One that is wider than a row has one of its own.
+        assert_eq!(rows(&[500.0, 100.0], 300.0), [(0, 0.0), (1, 0.0)]);
     }
 }

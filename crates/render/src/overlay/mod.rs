@@ -8,7 +8,7 @@ mod north;
 pub use axes::AxisOnPage;
 
 use crate::{Camera, ColourTable, Lens, RenderError, Stage};
-use corpuscle_drawing::bars::{prefix, scale_bar};
+use corpuscle_drawing::bars::{prefix, scale_bar, scale_bar_width};
 use corpuscle_drawing::png::svg_to_pixels;
 use corpuscle_drawing::svg::{Anchor, Figure, Svg};
 use corpuscle_gpu::Image;
@@ -224,8 +224,11 @@ impl Overlay {
         let free = HEIGHT - MARGIN - if self.remark.is_empty() { 0.0 } else { 20.0 };
         let (Some(unit), Lens::Orthographic { height }) = (&self.scale_bar, page.camera.lens) else { return free };
         let at = [page.size[0] - MARGIN - 10.0, HEIGHT - MARGIN - 24.0];
-        page.svg.rectangle([at[0] - 190.0, at[1] - 8.0], [200.0, 38.0], "panel");
-        scale_bar(&mut page.svg, HEIGHT / height, unit, at);
+        let scale = HEIGHT / height;
+        // As wide as the bar, and as its length in words.
+        let width = scale_bar_width(scale).max(60.0);
+        page.svg.rectangle([at[0] - width - 10.0, at[1] - 8.0], [width + 20.0, 38.0], "panel");
+        scale_bar(&mut page.svg, scale, unit, at);
         at[1] - 20.0
     }
 

@@ -269,6 +269,7 @@ impl VoronoiFlood {
         let domain = self.solver.domain.as_ref();
         let ([water, momentum, energy], [rained, infiltrated]) = self.booked();
         let mut state = self.state.clone();
+        state.booked_before = self.in_all(state.booked_before);
         (state.water, state.momentum, state.energy) = (water, momentum, energy);
         (state.soaked.rained, state.soaked.infiltrated) = (rained, infiltrated);
         state.tiles = self.tiles().to_vec();
@@ -337,6 +338,7 @@ impl VoronoiFlood {
         (state.water, state.momentum, state.energy) = (ours(&state.water), ours(&state.momentum), ours(&state.energy));
         if !is_first {
             state.soaked = Soaked { until: state.soaked.until, ..Soaked::default() };
+            state.booked_before = Default::default();
         }
         state.columns = [Vec::new(), Vec::new()];
         (state.beyond, state.records, state.tiles, state.counts) = Default::default();

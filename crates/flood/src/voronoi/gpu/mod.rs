@@ -252,6 +252,8 @@ pub(super) struct Totals {
     pub momentum: [f64; 2],
     pub rained: f64,
     pub infiltrated: f64,
+    /// Of these what the last step brought and took: water and energy in and out, rain, infiltration.
+    pub last: [f64; 6],
     /// Time since water last soaked into the ground, s.
     pub since_draught: f64,
 }
@@ -331,6 +333,14 @@ impl GpuSolver {
             momentum: [momentum_in, momentum_out].map(from_pair),
             rained: from_pair(self.status.rained),
             infiltrated: from_pair(self.status.infiltrated),
+            last: [
+                from_pair(self.status.last_inflow),
+                from_pair(self.status.last_outflow),
+                f64::from(self.status.last_energy[1]),
+                f64::from(self.status.last_energy[0]),
+                from_pair(self.status.last_rained),
+                from_pair(self.status.last_infiltrated),
+            ],
             since_draught: f64::from(self.status.since_draught),
         }
     }

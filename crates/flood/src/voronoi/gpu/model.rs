@@ -325,6 +325,9 @@ impl VoronoiFlood {
             self.book_pushes(&on_gpu.start, &pushes, last_step);
         }
         self.book(on_gpu, &totals);
+        if is_new {
+            self.book_before(&totals.last);
+        }
         Ok(())
     }
 
@@ -344,6 +347,16 @@ impl VoronoiFlood {
         for (account, [came, went], factor) in [water, momentum, energy] {
             account.inflow.add(factor * came);
             account.outflow.add(factor * went);
+        }
+    }
+
+    /// Finds what was booked before the last step, by what that brought and took.
+    fn book_before(&mut self, [came, went, energy_in, energy_out, rained, infiltrated]: &[f64; 6]) {
+        let last =
+            [came + rained, went + infiltrated, DENSITY * energy_in, DENSITY * energy_out, *rained, *infiltrated];
+        self.state.booked_before = self.state.booked();
+        for (sum, last) in self.state.booked_before.iter_mut().zip(last) {
+            sum.add(-last);
         }
     }
 

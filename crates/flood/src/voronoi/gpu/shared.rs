@@ -180,6 +180,16 @@ corpuscle_gpu::declare! {
             pub rained: [f32; 2],
             /// Infiltration, m3.
             pub infiltrated: [f32; 2],
+            /// Of these what the last step brought and took: water out and in.
+            pub last_outflow: [f32; 2],
+            /// See above.
+            pub last_inflow: [f32; 2],
+            /// Rain of the last step.
+            pub last_rained: [f32; 2],
+            /// Infiltration of the last step.
+            pub last_infiltrated: [f32; 2],
+            /// Energy out and in of the last step.
+            pub last_energy: [f32; 2],
             /// Steps of wet cells: low and high part.
             pub cell_steps: [u32; 2],
             /// Whether the batch goes on: [`GOING`](corpuscle_gpu::GOING) and those after it.

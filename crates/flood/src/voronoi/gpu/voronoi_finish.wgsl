@@ -84,6 +84,11 @@ fn book(all: Sums) {
     status.momentum_out = tidy(add(status.momentum_out, max(-all.momentum, 0.0)));
     status.rained = tidy(add_pair(status.rained, all.rained));
     status.infiltrated = tidy(add_pair(status.infiltrated, all.infiltrated));
+    status.last_outflow = all.outflow;
+    status.last_inflow = all.inflow;
+    status.last_energy = all.energy;
+    status.last_rained = all.rained;
+    status.last_infiltrated = all.infiltrated;
     status.steps += 1u;
     status.all_steps += 1u;
     let drank = status.all_steps % STEPS_A_DRAUGHT == 0u;
