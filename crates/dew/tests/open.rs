@@ -56,6 +56,21 @@ fn drops_form_and_run_off_and_no_water_is_lost() {
 }
 
 #[test]
+fn air_with_more_vapour_than_saturated_air_is_refused() {
+    let start = refused(&PANE.replace("relative_humidity = 0.8", "mixing_ratio = 0.5"));
+    assert!(
+        start.contains("dew.air.mixing_ratio = 0.5") && start.contains("0.0200") && start.contains("25.0 °C"),
+        "{start}"
+    );
+    let inflow = |keys: &str| {
+        PANE.replace("velocity_m_per_s = [0, 0, -0.05]", &format!("velocity_m_per_s = [0, 0, -0.05], {keys}"))
+    };
+    let told = refused(&inflow("mixing_ratio = 0.01, temperature_c = 5"));
+    assert!(told.contains("dew.faces.z_max.inflow.mixing_ratio") && told.contains("5.0 °C"), "{told}");
+    dew(&inflow("mixing_ratio = 0.005, temperature_c = 5"));
+}
+
+#[test]
 fn frames_show_air_solids_and_drops() {
     let mut dew = dew(PANE);
     advance(&mut dew, 0.1);

@@ -3,6 +3,7 @@
 use crate::fields;
 use crate::gauges::{LineGauge, PointGauge};
 use crate::limits::{check_inside, span};
+use crate::obstacles::Outline;
 use crate::zone::{Source, Zone};
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Block, Flood, Gauge, Section, Series, Table, Water};
@@ -180,6 +181,18 @@ pub(crate) fn point_gauges(scene: &Flood, terrain: &Terrain) -> Result<Vec<Point
         Ok(PointGauge { name: gauge.name.clone(), at })
     };
     scene.gauge.iter().map(gauge).collect()
+}
+
+/// Warnings of gauges that stand in obstacles over which no water goes.
+pub(crate) fn warn_of_gauges(points: &[PointGauge], scene: &Flood, outlines: &[Outline]) -> Vec<String> {
+    let warning = |point: &PointGauge| {
+        let outline = outlines.iter().find(|outline| outline.contains(point.at))?;
+        let obstacle = scene.obstacle.get(outline.obstacle).filter(|obstacle| obstacle.height_m.is_none())?;
+        let what =
+            format!("The gauge '{}' stands in the obstacle '{}': there is no water there.", point.name, obstacle.name);
+        Some(what)
+    };
+    points.iter().filter_map(warning).collect()
 }
 
 pub(crate) fn line_gauges(scene: &Flood, terrain: &Terrain, spacing: f64) -> Result<Vec<LineGauge>, ModelError> {

@@ -376,9 +376,38 @@ fn bad_places_are_refused_in_words() {
     assert!(outside.err().unwrap().to_string().contains("'far'"));
     let absurd = basin(&format!("spacing_m = 0.0001\n{WALLS}water = [{{ depth_m = 1 }}]"), 1, |_, _| 0.0);
     assert!(absurd.err().unwrap().to_string().contains("spacing_m"));
+    let part =
+        |from: f64, to: f64| format!("{{ side = \"west\", from = {from}, to = {to}, edge = {{ discharge = 2 }} }}");
+    let told = |parts: &str| {
+        basin(&format!("spacing_m = 2\n{WALLS}edge_part = [{parts}]"), 1, |_, _| 0.0)
+            .err()
+            .map(|error| error.to_string())
+    };
+    let beside = told(&part(5000.0, 6000.0)).unwrap();
+    assert!(beside.contains("flood.edge_part.0 from 5000 to 6000") && beside.contains("from 0 to 30"), "{beside}");
+    let twice = told(&format!("{}, {}", part(0.0, 10.0), part(9.0, 20.0))).unwrap();
+    assert!(twice.contains("flood.edge_part.1 overlaps flood.edge_part.0"), "{twice}");
+    assert_eq!(told(&format!("{}, {}", part(-5.0, 10.0), part(10.0, 20.0))), None);
 }
 
 /// Water stands only where it was put, and only its surroundings have cells.
+#[test]
+fn a_gauge_in_an_obstacle_is_told() {
+    let at = |at: &str, height: &str| {
+        let keys = format!(
+            "spacing_m = 3\nwater = [{{ level_m = 1 }}]\nobstacle = [{{ name = \"house\", circle = {{ centre = [20, 15], radius_m = 5 }}{height} }}]\n\
+             gauge = [{{ name = \"here\", at = {at} }}]"
+        );
+        basin(&keys, 1, |_, _| 0.0).unwrap().warnings()
+    };
+    let told = at("[21, 15]", "");
+    assert!(told.iter().any(|warning| warning.contains("'here'") && warning.contains("'house'")), "{told:?}");
+    // A roof over which water may go, and a gauge beside the house.
+    for (position, height) in [("[21, 15]", ", height_m = 0.5"), ("[26, 15]", "")] {
+        assert!(at(position, height).iter().all(|warning| !warning.contains("'here'")));
+    }
+}
+
 #[test]
 fn dry_land_has_no_cells() {
     let text = "run.until_s = 60\nterrain.plane.extent = { length_m = 20000, width_m = 20000, cell_m = 100 }\n[flood]\n\

@@ -257,6 +257,9 @@ mod tests {
             ("t,q\n5,1\n\n0,1\n", ["q.csv:4", "sort the rows"]),
             ("0,1\n1,nan\n", ["q.csv:2", "finite"]),
             ("t,q\n", ["q.csv", "no rows"]),
+            ("0 s,50\n60,10\n", ["q.csv:1", "two numbers"]),
+            ("t,q\n2024-05-01 00:00,3\n", ["q.csv:2", "two numbers"]),
+            ("0 1\n60 2\n", ["q.csv:1", "with a comma between"]),
             ("", ["q.csv", "no rows"]),
         ] {
             let message = load_csv(text).unwrap_err().to_string();

@@ -134,6 +134,12 @@ fn the_box_and_the_air() {
     assert_refused(air, &with("temperature_c = 25, relative_humidity = 60"), &["60", "from 0 to 1", "percent"]);
     assert_refused(air, &with("temperature_c = 25, relative_humidity = -0.1"), &["= -0.1", "from 0 to 1"]);
     assert_refused(air, &with("temperature_c = 25, dew_point_c = 26"), &["dew.air.dew_point_c", "fog already"]);
+    for name in ["wine glass", "air"] {
+        let text = GOOD.replace("name = \"glass\"", "name = \"wine_glass\"");
+        let text = text.replace("name = \"ring\"", &format!("name = \"{name}\""));
+        let told = refuse(&text);
+        assert!(told.contains(".name") && (told.contains("spaces as `_`") || told.contains("other gauges")), "{told}");
+    }
     assert_refused(air, &with("temperature_c = 25, mixing_ratio = 10"), &["dew.air.mixing_ratio", "kg of dry air"]);
     assert_refused(air, &with("temperature_c = 25"), &["dew.air", "exactly one of relative_humidity, dew_point_c"]);
     let two = with("temperature_c = 25, relative_humidity = 0.5, dew_point_c = 10");

@@ -142,6 +142,28 @@ fn the_box_and_what_is_in_it() {
     assert_refused("follow = 0", "follow = 100000", &["gas.follow = 100000", "no such ball"]);
     assert_refused("measure = { profile_axis = \"y\" }", "measure = { profile_axis = \"z\" }", &["no z in two dim"]);
     assert_refused("measure = { profile_axis = \"y\" }", "measure = { speed_bins = 0 }", &["speed_bins", "from 1 to"]);
+    let far = "measure = { pair_distance = 26 }";
+    assert_refused(
+        "measure = { profile_axis = \"y\" }",
+        far,
+        &["pair_distance = 26", "at most 25, half the shortest side"],
+    );
+    // One has the other's files, or the gauges of the gas or a wall.
+    for (one, other, refused) in
+        [("red ball", "red_ball", true), ("gas", "red", true), ("x_min", "red", true), ("red", "blue", false)]
+    {
+        let of = |name: &str| {
+            format!("[[gas.species]]\nname = \"{name}\"\ncount = 1\nradius = 1\nmass = 1\ntemperature = 1\n")
+        };
+        let read = Scene::parse(
+            &format!("run.until_s = 1\n[gas]\nsize = [50, 50]\n{}{}", of(one), of(other)),
+            "test.toml",
+            &[],
+        );
+        let told = read.err().map(|error| error.to_string());
+        assert_eq!(told.is_some(), refused, "{told:?}");
+        assert!(told.is_none_or(|told| told.contains("name")));
+    }
     let empty = refuse("run.until_s = 1\ngas.size = [1, 1]");
     assert!(empty.contains("gas.species") && empty.contains("there are no balls"), "{empty}");
 }

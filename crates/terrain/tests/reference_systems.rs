@@ -184,4 +184,19 @@ fn another_raster_is_looked_up_wherever_it_lies() {
     let field = RasterField::open(&degrees, &terrain).unwrap();
     let [x, y] = terrain.from_lon_lat([9.501, 50.5]).unwrap();
     assert!((field.bilinear(x, y).unwrap() - 9.501).abs() < 1e-9);
+    // Beside the terrain, in metres and in degrees, and round it: smaller than the distance between positions that are tried, and larger.
+    let of = |name: &str, builder: GeoTiffBuilder, corner: [f64; 2], cell: f64| {
+        let path = folder.path().join(name);
+        write(&path, builder, corner, cell, |_, _| 1.0);
+        RasterField::open(&path, &terrain).map(|_| ()).map_err(|error| error.to_string())
+    };
+    for (name, geographic, corner, cell) in
+        [("west.tif", false, [534_000.0, 5_595_000.0], 10.0), ("north.tif", true, [9.49, 51.5], 0.0005)]
+    {
+        let builder = if geographic { builder().geographic_epsg(4326) } else { builder().projected_epsg(25832) };
+        let told = of(name, builder, corner, cell).unwrap_err();
+        assert!(told.contains(name) && told.contains("outside the terrain"), "{told}");
+    }
+    assert_eq!(of("small.tif", builder().projected_epsg(25832), [535_111.0, 5_594_777.0], 0.01), Ok(()));
+    assert_eq!(of("large.tif", builder().projected_epsg(25832), [500_000.0, 5_700_000.0], 3000.0), Ok(()));
 }

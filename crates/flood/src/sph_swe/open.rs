@@ -100,6 +100,8 @@ impl SphSweFlood {
         let reach = flood.sph_swe.largest_smoothing * h;
         let closest = setup::closest(bodies, &terrain, spacing, volume);
         let outlines = obstacles::open(flood, &terrain, folder, reach)?;
+        let points = setup::point_gauges(flood, &terrain)?;
+        let warnings = setup::warn_of_gauges(&points, flood, &outlines.all);
         let obstacles =
             Obstacles::new(flood, &terrain, outlines, closest, reach, &Kernel::new(flood.sph_swe.kernel, h));
         let sources = setup::sources(flood, &terrain, folder, spacing)?;
@@ -122,12 +124,12 @@ impl SphSweFlood {
             impulses: vec![[0.0; 2]; obstacles.names.len()],
             put_back: 0,
             overtopped: vec![None; obstacles.names.len()],
-            warnings: Vec::new(),
+            warnings,
             overrides: Overrides::default(),
         };
         let model = Self {
             roughness: Roughness::open(flood, &terrain, folder)?,
-            points: setup::point_gauges(flood, &terrain)?,
+            points,
             lines: setup::line_gauges(flood, &terrain, spacing)?,
             map_period,
             surroundings: Surroundings { terrain, edges, obstacles },

@@ -190,6 +190,8 @@ impl VoronoiFlood {
         let boundaries = Boundaries::open(&settings, &terrain, folder)?;
         let (periodic, mirrors, brings) = (boundaries.periodic(), boundaries.mirrors(), boundaries.brings());
         let obstacles = Arc::new(obstacles::open(&settings, &terrain, folder, 4.0 * spacing)?);
+        let points = setup::point_gauges(&settings, &terrain)?;
+        let warnings = setup::warn_of_gauges(&points, &settings, &obstacles.all);
         let mut layout = Layout::new(terrain.bounds(), periodic, spacing, seed);
         let roughness = Roughness::open(&settings, &terrain, folder)?;
         let slowing = Slowing::of(&roughness, gravity);
@@ -215,7 +217,7 @@ impl VoronoiFlood {
             water: Account::default(),
             momentum: Account::default(),
             energy: Account::default(),
-            warnings: Vec::new(),
+            warnings,
             overrides: Overrides::default(),
             blocks: Vec::new(),
             remakes: 0,
@@ -239,7 +241,7 @@ impl VoronoiFlood {
         solver.local = (settings.time_steps == TimeSteps::Local).then(Local::default);
         solver.domain = Domain::new(processes, &solver.mesh.layout, solver.local.is_some());
         Ok(Self {
-            points: setup::point_gauges(&settings, &terrain)?,
+            points,
             lines: setup::line_gauges(&settings, &terrain, spacing)?,
             solver,
             adaptive,

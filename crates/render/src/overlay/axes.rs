@@ -10,6 +10,8 @@ use corpuscle_drawing::ticks;
 const TICK: f64 = 6.0;
 const NUMBER: f64 = 18.0;
 const NAME: f64 = 24.0;
+/// From the upper end of an axis to its name above it.
+const NAME_ABOVE: f64 = 16.0;
 /// Space of a step between ticks at least, and steps at most.
 const STEP: f64 = 46.0;
 const MOST_STEPS: f64 = 8.0;
@@ -76,7 +78,13 @@ impl Axes {
         let name = ["x", "y", "z"][axis];
         let name = if unit.is_empty() { name.to_owned() } else { format!("{name}, {unit}") };
         let away = NUMBER + NAME + if anchor(out) == Anchor::Middle { 0.0 } else { widest - 12.0 };
-        let at = std::array::from_fn(|k| 0.5 * (one[k] + other[k]) + away * out[k]);
+        let mut at: [f64; 2] = std::array::from_fn(|k| 0.5 * (one[k] + other[k]) + away * out[k]);
+        let is_cut = at[0] - LETTER * name.chars().count() as f64 <= 0.0;
+        if anchor(out) == Anchor::End && is_cut {
+            // Beside the numbers there is no room: above the axis.
+            let top = if one[1] < other[1] { one } else { other };
+            at = [top[0], top[1] - NAME_ABOVE];
+        }
         Some(AxisOnPage { line: [one, other], ticks: on_edge, name: (at, name), anchor: anchor(out) })
     }
 

@@ -1,7 +1,7 @@
 //! Aerial photos: GeoTIFF files with colours.
 
 use super::geotiff::{SampleFormat, open, place, refused, south_first};
-use super::{Window, check_size, geotiff};
+use super::{Window, check_size, geotiff, memory};
 use crate::{Georeference, Terrain, TerrainError};
 use geotiff_reader::GeoTiffFile;
 use proj4rs::Proj;
@@ -22,6 +22,7 @@ impl Photo {
     /// # Errors
     /// [`TerrainError`] for a file that is no GeoTIFF, is damaged, or does not say where it lies.
     pub fn open(path: &Path) -> Result<Self, TerrainError> {
+        memory::open(path).map_err(|error| TerrainError::read(path, error))?;
         let file = open(path)?;
         let place = place(path, &file)?;
         geotiff::check_bytes(path, &file)?;
