@@ -91,20 +91,23 @@ pub fn check(options: &CheckOptions, as_json: bool) -> anyhow::Result<ExitCode> 
     Ok(ExitCode::SUCCESS)
 }
 
-/// An error as JSON: the message and, where it is in the scene's text, file, line and column.
+/// An error as JSON: the message and, where it is in the scene's text, file, line and column, or the option that it is in.
 fn fault(error: &anyhow::Error) -> Value {
     let problem = match error.downcast_ref() {
         Some(corpuscle::Error::Scene(error)) => error.problem(),
         _ => None,
     };
     let place = problem.and_then(|problem| problem.place.as_ref());
+    let in_file = place.filter(|place| place.line.is_some());
+    let in_option = place.filter(|place| place.line.is_none());
     json!({
         "ok": false,
         "error": in_words(error),
-        "key": problem.map(|problem| &problem.key),
-        "file": place.map(|place| &place.source),
-        "line": place.and_then(|place| place.line),
-        "column": place.map(|place| place.column),
+        "key": problem.map(|problem| &problem.key).filter(|key| !key.is_empty()),
+        "file": in_file.map(|place| &place.source),
+        "line": in_file.and_then(|place| place.line),
+        "column": in_file.map(|place| place.column),
+        "option": in_option.map(|place| &place.source),
     })
 }
 

@@ -37,6 +37,10 @@ fn a_scene_that_is_wrong_is_refused_with_its_line() {
     }
     let report = place.run(&["check", "bad.toml", "--json"]).expect_status(2).json();
     assert_eq!((&report["ok"], &report["line"], &report["key"]), (&false.into(), &9.into(), &"flood.spacng_m".into()));
+    place.write("lake.toml", LAKE);
+    let report = place.run(&["check", "lake.toml", "--json", "--set", "flood.spacing_m=-1"]).expect_status(2).json();
+    assert_eq!((&report["option"], &report["key"]), (&"--set flood.spacing_m=-1".into(), &"flood.spacing_m".into()));
+    assert!(report["file"].is_null() && report["line"].is_null() && report["column"].is_null(), "{report}");
     place.write("nan.toml", &LAKE.replace("level_m = 2.0", "level_m = nan"));
     let refused = place.run(&["run", "nan.toml"]).expect_status(2);
     assert!(refused.stderr.contains("flood.water.0.level_m = nan: must be a finite number"), "{}", refused.stderr);

@@ -114,10 +114,20 @@ impl<'a> Document<'a> {
 
     /// The path of the innermost key or value written at `span`.
     pub fn key_at(&self, span: &Range<usize>) -> String {
+        self.innermost(span, |_| true)
+    }
+
+    /// The path of the innermost table written at `span`: that of `--set flood.gauge.1.at=…`, which has the span of its only value, is
+    /// `flood.gauge.1`.
+    pub fn table_at(&self, span: &Range<usize>) -> String {
+        self.innermost(span, |value| matches!(value, DeValue::Table(_)))
+    }
+
+    fn innermost(&self, span: &Range<usize>, is_meant: impl Fn(&DeValue<'_>) -> bool) -> String {
         let mut best = (usize::MAX, String::new());
-        visit(&self.root, "", &mut |path, range| {
+        visit(&self.root, "", &mut |path, range, value| {
             let inside = range.start <= span.start && span.end <= range.end;
-            if inside && range.len() <= best.0 {
+            if inside && range.len() <= best.0 && is_meant(value) {
                 best = (range.len(), path.to_owned());
             }
         });
@@ -255,13 +265,13 @@ fn first_missing(node: &Spanned<DeValue<'_>>, value: &Value, path: &str) -> Opti
 }
 
 /// Calls `see` with the path and place of every key and every value below `node`.
-fn visit(node: &Spanned<DeValue<'_>>, path: &str, see: &mut impl FnMut(&str, Range<usize>)) {
-    see(path, node.span());
+fn visit(node: &Spanned<DeValue<'_>>, path: &str, see: &mut impl FnMut(&str, Range<usize>, &DeValue<'_>)) {
+    see(path, node.span(), node.get_ref());
     match node.get_ref() {
         DeValue::Table(table) => {
             for (key, value) in table {
                 let path = join(path, key.get_ref());
-                see(&path, key.span());
+                see(&path, key.span(), value.get_ref());
                 visit(value, &path, see);
             }
         }

@@ -67,6 +67,7 @@ fn explain(error: &toml::de::Error, document: &Document<'_>) -> Box<Problem> {
     let place = span.as_ref().map(|span| document.place(span));
     if let Some(rest) = message.strip_prefix("missing field ") {
         let name = words_in_ticks(rest).next().unwrap_or_default();
+        let key = span.as_ref().map(|span| document.table_at(span)).unwrap_or_default();
         let path = if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
         let place = if key.is_empty() { Some(document.whole()) } else { place };
         return Box::new(Problem { what: format!(" is missing: {}", what_to_give(&path, name)), key: path, place });

@@ -218,6 +218,15 @@ fn names_and_edges() {
 }
 
 #[test]
+fn what_an_override_leaves_out_is_named_by_its_table() {
+    for path in ["flood.gauge.1.at", "flood.outflow.0.at"] {
+        let message = refuse(GOOD, &[(path, "[1, 3]")]);
+        let table = path.strip_suffix(".at").unwrap();
+        assert!(message.contains(&format!("{table}.")) && !message.contains(".at."), "{message}");
+    }
+}
+
+#[test]
 fn overrides_are_named() {
     let others = ("flood.wet_depth_m", "0.5");
     for ((path, value), words) in [
