@@ -257,6 +257,17 @@ fn totals_are_those_of_the_time_shown() {
     assert!(flood.time_step() > 0.2, "too short a step for this test: {}", flood.time_step());
 }
 
+#[test]
+fn ground_has_been_under_water_until_the_time_shown() {
+    let mut flood = basin(&format!("spacing_m = 3\n{WALLS}water = [{{ level_m = 0.3 }}]"), 3, |x, _| 0.01 * x).unwrap();
+    for time in [3.31, 7.0] {
+        go(&mut flood, time);
+        let duration = flood.maps().into_iter().find(|map| map.name == "duration_s").unwrap().values;
+        let wet: Vec<f32> = duration.into_iter().filter(|value| value.is_finite()).collect();
+        assert!(wet.len() > 500 && wet.iter().all(|value| (f64::from(*value) - time).abs() < 1e-4), "{time}");
+    }
+}
+
 /// Rough ground, islands, three seeds, both ways to store: a lake held at its level at one side, open at another, stays as it is.
 #[test]
 fn a_lake_at_rest_stays_at_rest_at_every_kind_of_side() {

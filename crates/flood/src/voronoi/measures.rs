@@ -48,8 +48,7 @@ impl VoronoiFlood {
         }
         row.extend(self.state.flows.row());
         let share = self.share_shown();
-        // From the time shown to the end of the step.
-        let rest = (1.0 - share) * (self.state.time - self.state.before);
+        let rest = self.rest_of_step();
         let of_obstacles = self.state.forces.iter().zip(&self.state.impulses);
         let pushes = of_obstacles.flat_map(|(force, sum)| [*force, [0, 1].map(|axis| sum[axis] - rest * force[axis])]);
         row.extend(pushes.flatten().map(|push| DENSITY * push));

@@ -256,6 +256,11 @@ impl VoronoiFlood {
         if time > before { ((self.shown - before) / (time - before)).clamp(0.0, 1.0) } else { 1.0 }
     }
 
+    /// Time from that which is shown to the end of the last step, s.
+    fn rest_of_step(&self) -> f64 {
+        (1.0 - self.share_shown()) * (self.state.time - self.state.before)
+    }
+
     /// The water of a cell at the time shown.
     fn water_shown(&self, cell: usize) -> Water {
         let share = self.share_shown();

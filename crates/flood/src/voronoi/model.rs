@@ -180,7 +180,8 @@ impl Model for VoronoiFlood {
         let water = |cell: usize| self.water_shown(cell);
         let mesh = &self.solver.mesh;
         let domain = self.solver.domain.as_ref();
-        let wet = maps::wet(mesh, &self.terrain, &self.state.records, &water, self.settings.wet_depth_m, domain);
+        let (rest, wet_depth) = (self.rest_of_step(), self.settings.wet_depth_m);
+        let wet = maps::wet(mesh, &self.terrain, &self.state.records, &water, rest, wet_depth, domain);
         if let Some(wet) = wet {
             wet.each_map(is_wanted, take);
         }

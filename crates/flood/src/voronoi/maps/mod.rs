@@ -98,12 +98,13 @@ impl Wet {
     }
 }
 
-/// What the maps show as they stand, with the water now given by `water`; of several processes at the first, none at others.
+/// What the maps show as they stand, with the water now given by `water`, `rest` s before the end of the last step; of several processes at the first, none at others.
 pub(crate) fn wet(
     mesh: &Mesh,
     terrain: &Terrain,
     records: &[Record],
     water: &(impl Fn(usize) -> Water + Sync),
+    rest: f64,
     wet_depth: f64,
     domain: Option<&Domain>,
 ) -> Option<Wet> {
@@ -138,7 +139,9 @@ pub(crate) fn wet(
         }
         let level = (terrain.height(x, y) + f64::from(most)) as f32;
         let hazard = record.hazard * (most / record.max_depth).min(1.0);
-        let history = [most, record.max_speed(), record.arrival, record.duration, hazard, level];
+        let to_come = if now.is_some() { rest as f32 } else { 0.0 };
+        let duration = (record.duration - to_come).max(0.0);
+        let history = [most, record.max_speed(), record.arrival, duration, hazard, level];
         values[1..7].copy_from_slice(&history);
         [values[9], values[10]] = record.fastest;
         Some((row * columns + column, values))
