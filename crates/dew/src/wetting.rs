@@ -303,7 +303,7 @@ impl Wetting {
     }
 }
 
-/// Area of a plane for each particle of the layer below it, m2. The samples' own areas ignore where the room cuts a solid.
+/// Area of a plane for each particle of the layer below it, m2; its normal is in the solid's own axes, along which the particles stand. The samples' own areas ignore where the room cuts a solid.
 fn area_in_cell(normal: [f64; 3], spacing: f64) -> f64 {
     spacing * spacing / normal.iter().fold(0.0_f64, |most, along| most.max(along.abs()))
 }
@@ -332,7 +332,7 @@ impl Dew {
             solid: particle.body,
             position: [0, 1, 2].map(foot),
             normal: nearest.normal,
-            half_width: 0.5 * area_in_cell(nearest.normal, self.scale.spacing).sqrt(),
+            half_width: 0.5 * area_in_cell(solid.own_direction(nearest.normal), self.scale.spacing).sqrt(),
         }
     }
 

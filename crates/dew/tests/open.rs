@@ -55,6 +55,22 @@ fn drops_form_and_run_off_and_no_water_is_lost() {
     }
 }
 
+/// However a plate is turned, its surface is as large.
+#[test]
+fn patches_of_a_turned_plate_are_as_large_as_the_plate() {
+    let area = |degrees: f64| {
+        let text = format!(
+            "run.until_s = 1\n[dew]\nsize_m = [0.03, 0.03, 0.03]\nspacing_m = 0.001\nair = {{ temperature_c = 25, relative_humidity = 0.8 }}\n\
+             [[dew.solid]]\nname = \"plate\"\nshape = {{ box = {{ size_m = [0.016, 0.016, 0.004] }} }}\nposition_m = [0.015, 0.015, 0.015]\n\
+             rotation_deg = [0, {degrees}, 0]\ntemperature_c = 5\nheld = true"
+        );
+        let patches = dew(&text).surfaces().remove(0).half_width;
+        patches.iter().map(|half| 4.0 * half * half).sum::<f64>()
+    };
+    let (level, turned) = (area(0.0), area(35.0));
+    assert!((turned / level - 1.0).abs() < 0.02, "{level} {turned}");
+}
+
 #[test]
 fn air_with_more_vapour_than_saturated_air_is_refused() {
     let start = refused(&PANE.replace("relative_humidity = 0.8", "mixing_ratio = 0.5"));

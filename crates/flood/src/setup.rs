@@ -183,9 +183,20 @@ pub(crate) fn point_gauges(scene: &Flood, terrain: &Terrain) -> Result<Vec<Point
     scene.gauge.iter().map(gauge).collect()
 }
 
-/// Warnings of gauges that stand in obstacles over which no water goes.
-pub(crate) fn warn_of_gauges(points: &[PointGauge], scene: &Flood, outlines: &[Outline]) -> Vec<String> {
+/// Warnings of gauges that stand in obstacles over which no water goes, or where there is no ground.
+pub(crate) fn warn_of_gauges(
+    points: &[PointGauge],
+    scene: &Flood,
+    outlines: &[Outline],
+    terrain: &Terrain,
+) -> Vec<String> {
     let warning = |point: &PointGauge| {
+        if !terrain.has_data_at(point.at[0], point.at[1]) {
+            return Some(format!(
+                "The gauge '{}' stands where the terrain has no data: there is no water there.",
+                point.name
+            ));
+        }
         let outline = outlines.iter().find(|outline| outline.contains(point.at))?;
         let obstacle = scene.obstacle.get(outline.obstacle).filter(|obstacle| obstacle.height_m.is_none())?;
         let what =

@@ -37,6 +37,11 @@ impl Solid {
         self.nearest_of_its_own(self.pose.unplace(point)).distance
     }
 
+    /// A direction of the scene in the solid's own coordinates.
+    pub fn own_direction(&self, direction: [f64; 3]) -> [f64; 3] {
+        self.pose.turn_back(direction)
+    }
+
     /// The axis of its own, and 0 for its negative or 1 for its positive end, along which a direction of the scene points most; the first of those that
     /// are equal.
     pub fn axis_and_end(&self, direction: [f64; 3]) -> [usize; 2] {

@@ -15,6 +15,9 @@ use std::sync::Arc;
 const LOWEST_ON_EARTH: f64 = -11_000.0;
 const HIGHEST_ON_EARTH: f64 = 9_000.0;
 
+/// What most files mark cells without data by, m.
+const USUAL_MARK: f64 = -9999.0;
+
 /// Largest magnitude of valid heights, m.
 const MAX_HEIGHT: f64 = 1e6;
 
@@ -27,10 +30,13 @@ const MAX_SCALE_ERROR: f64 = 0.005;
 /// The ground from a raster; `path` is for messages.
 pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> Result<Terrain, TerrainError> {
     let mut warnings = std::mem::take(&mut raster.warnings);
+    mark_no_data(&mut raster, path, &mut warnings);
     check_heights(&raster, path, &mut warnings)?;
     let size = [raster.columns, raster.rows];
     let has_holes = raster.values.iter().any(|height| height.is_nan());
-    let valid = has_holes.then(|| raster.values.iter().map(|height| !height.is_nan()).collect());
+    // Ground that is filled in is ground.
+    let is_solid = has_holes && no_data == NoData::Wall;
+    let valid = is_solid.then(|| raster.values.iter().map(|height| !height.is_nan()).collect());
     holes::close(&mut raster.values, size, no_data);
     let frame = Frame::of_grid(&raster.georeference, size).map_err(|what| TerrainError::unusable(path, what))?;
     let map_grid =
@@ -56,6 +62,19 @@ pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> R
         (bounds, metric(raster, &map_grid))
     };
     Ok(Terrain { bounds, ground: Ground::Surface(surface), map_grid, valid, warnings })
+}
+
+/// Takes heights of exactly the usual mark for cells without data, and tells it.
+fn mark_no_data(raster: &mut Raster, path: &Path, warnings: &mut Vec<String>) {
+    let marked = raster.values.iter().filter(|height| **height == USUAL_MARK).count();
+    if marked == 0 || marked == raster.values.iter().filter(|height| !height.is_nan()).count() {
+        return;
+    }
+    raster.values.iter_mut().filter(|height| **height == USUAL_MARK).for_each(|height| *height = f64::NAN);
+    warnings.push(format!(
+        "{} has {marked} cells of exactly {USUAL_MARK} m, which were taken for cells without data; say so in the file: `gdal_edit.py -a_nodata {USUAL_MARK}`.",
+        path.display()
+    ));
 }
 
 /// Refuses invalid heights, and warns of doubtful ones.

@@ -293,6 +293,35 @@ fn a_map_comes_back_with_the_place_and_the_system_of_the_terrain() {
 }
 
 #[test]
+fn heights_in_feet_are_written_in_metres_and_other_values_have_no_unit_of_heights() {
+    let (folder, path) = temporary("dem.tif");
+    let in_feet = builder()
+        .geokey(4099, geotiff_writer::GeoKeyValue::Short(9002))
+        .geokey(4096, geotiff_writer::GeoKeyValue::Short(8228));
+    write(&path, &in_feet, |v| v);
+    let terrain = open(&path);
+    let [x, y] = terrain.map_grid().centre(3, 4);
+    assert!((terrain.height(x, y) - 0.3048 * value(3, 4)).abs() < 1e-9);
+    let out = folder.path().join("metres.tif");
+    let values: Vec<f32> = (0..ROWS * COLUMNS).map(|index| index as f32).collect();
+    write_geotiff(&out, terrain.map_grid(), &values, -9999.0).unwrap();
+    let raster = read_raster(&out).unwrap();
+    assert!(raster.warnings.is_empty() && raster.values[7] == 7.0, "{:?}", raster.warnings);
+    assert_eq!(corpuscle_terrain::RasterField::open(&path, &terrain).unwrap().nearest(x, y), Some(value(3, 4)));
+}
+
+#[test]
+fn the_usual_mark_counts_where_no_other_is_named() {
+    let (folder, path) = temporary("dem.tif");
+    write(&path, &builder(), |v| if v == 10.0 { -9999.0 } else { v });
+    let terrain = open(&path);
+    assert!(terrain.has_holes() && terrain.warnings().iter().any(|warning| warning.contains("-9999")));
+    let ascii = folder.path().join("dem.asc");
+    std::fs::write(&ascii, "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 -9999\n3 4\n").unwrap();
+    assert!(read_raster(&ascii).unwrap().values[1].is_nan());
+}
+
+#[test]
 fn a_large_map_has_overviews_of_its_own_cells_before_its_data() {
     let (folder, path) = temporary("dem.tif");
     let [columns, rows] = [700, 300];

@@ -161,7 +161,7 @@ fn gaps_have_no_data_and_are_told() {
     let [x, y] = terrain.map_grid().centre(22, 3);
     assert!(terrain.height(x, y) > 60.0, "a wall stands in the gap");
     let filled = folder.tiles(&["west.tif", "east.tif"], NoData::Fill).unwrap();
-    assert!(filled.height(x, y) < 40.0);
+    assert!(filled.height(x, y) < 40.0 && filled.is_valid_cell(22, 3) && filled.has_data_at(x, y));
 }
 
 #[test]

@@ -82,7 +82,11 @@ impl Roughness {
         let open = |path: &Path| RasterField::open(folder.join(path), terrain).map(Box::new).map_err(setup);
         let rest = match &scene.manning {
             Manning::Number(n) => Coefficient::Even(*n),
-            Manning::Raster { raster } => Coefficient::Raster(open(raster)?),
+            Manning::Raster { raster } => {
+                let field = open(raster)?;
+                check_manning(&folder.join(raster), &field)?;
+                Coefficient::Raster(field)
+            }
         };
         let manning = |number| Ok(Self { law: Law::Manning, number });
         let Some(LandUse { raster, class }) = &scene.land_use else { return manning(rest) };
@@ -121,6 +125,19 @@ impl Roughness {
         particle.v *= factor;
         particle.volume * (particle.u + particle.v - before)
     }
+}
+
+/// Refuses a raster with values that are no Manning's n.
+fn check_manning(path: &Path, field: &RasterField) -> Result<(), ModelError> {
+    let Some([low, high]) = field.range() else { return Ok(()) };
+    if low >= 0.0 && high <= LARGEST_MANNING {
+        return Ok(());
+    }
+    Err(setup(format!(
+        "flood.manning: the raster {} has values from {low} to {high}, which are no Manning's n, 0.01 to 0.2 for most ground; if it has Strickler's k \
+         give 1 / k, and if some value marks cells without data say so in the file: `gdal_edit.py -a_nodata`",
+        path.display()
+    )))
 }
 
 impl Coefficient {

@@ -21,10 +21,19 @@ pub(crate) fn open(flood: &Settings, terrain: &Terrain, folder: &Path, reach: f6
     let far = surroundings(terrain, reach);
     for (number, obstacle) in flood.obstacle.iter().enumerate() {
         let subject = format!("the obstacle '{}'", obstacle.name);
-        for rings in polygons(obstacle, terrain, folder)? {
-            let rings: Polygon = rings.into_iter().filter(|ring| ring.len() >= 3).collect();
-            let Some(outer) = rings.first() else { continue };
-            check_overlap(&subject, outer, terrain)?;
+        let areas: Vec<Polygon> = polygons(obstacle, terrain, folder)?
+            .into_iter()
+            .map(|rings| rings.into_iter().filter(|ring| ring.len() >= 3).collect())
+            .collect();
+        // Of the buildings of a town some may stand beyond the terrain, but not all.
+        let overlaps = |rings: &Polygon| rings.first().map(|outer| check_overlap(&subject, outer, terrain));
+        let on_terrain = areas.iter().any(|rings| overlaps(rings).is_some_and(|checked| checked.is_ok()));
+        for rings in areas {
+            match overlaps(&rings) {
+                Some(Err(error)) if !on_terrain => return Err(error),
+                Some(Ok(())) => {}
+                _ => continue,
+            }
             rings.iter().try_for_each(|ring| check_known(&subject, ring))?;
             let rings = rings.into_iter().map(|ring| ring_within(ring, far)).filter(|ring| ring.len() >= 3);
             let rings: Polygon = rings.map(|ring| going_on_beyond(ring, terrain.bounds(), reach)).collect();

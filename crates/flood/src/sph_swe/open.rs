@@ -101,7 +101,7 @@ impl SphSweFlood {
         let closest = setup::closest(bodies, &terrain, spacing, volume);
         let outlines = obstacles::open(flood, &terrain, folder, reach)?;
         let points = setup::point_gauges(flood, &terrain)?;
-        let warnings = setup::warn_of_gauges(&points, flood, &outlines.all);
+        let warnings = setup::warn_of_gauges(&points, flood, &outlines.all, &terrain);
         let obstacles =
             Obstacles::new(flood, &terrain, outlines, closest, reach, &Kernel::new(flood.sph_swe.kernel, h));
         let sources = setup::sources(flood, &terrain, folder, spacing)?;

@@ -191,7 +191,7 @@ impl VoronoiFlood {
         let (periodic, mirrors, brings) = (boundaries.periodic(), boundaries.mirrors(), boundaries.brings());
         let obstacles = Arc::new(obstacles::open(&settings, &terrain, folder, 4.0 * spacing)?);
         let points = setup::point_gauges(&settings, &terrain)?;
-        let warnings = setup::warn_of_gauges(&points, &settings, &obstacles.all);
+        let warnings = setup::warn_of_gauges(&points, &settings, &obstacles.all, &terrain);
         let mut layout = Layout::new(terrain.bounds(), periodic, spacing, seed);
         let roughness = Roughness::open(&settings, &terrain, folder)?;
         let slowing = Slowing::of(&roughness, gravity);
@@ -230,6 +230,7 @@ impl VoronoiFlood {
             layout.rim *= f64::from(1_u32 << HIGHEST);
         }
         let longest = longest_step(&layout, gravity);
+        let finest = layout.finest_spacing();
         lines.extend(walls::of_sides(&settings, &terrain)?);
         let bed = Bed::new(Arc::clone(&terrain), obstacles, mirrors, periodic, lines, spacing, settings.storage);
         let mut roofs = walls::areas(&bed.obstacles.all, settings.obstacle.len(), terrain.bounds());
@@ -242,7 +243,7 @@ impl VoronoiFlood {
         solver.domain = Domain::new(processes, &solver.mesh.layout, solver.local.is_some());
         Ok(Self {
             points,
-            lines: setup::line_gauges(&settings, &terrain, spacing)?,
+            lines: setup::line_gauges(&settings, &terrain, finest)?,
             solver,
             adaptive,
             zone_tiles: 0,
@@ -298,6 +299,8 @@ impl VoronoiFlood {
                 )));
             }
         }
+        self.check_sides()?;
+        let mesh = &self.solver.mesh;
         let domain = self.solver.domain.as_ref();
         self.zone_tiles = self.tiles().len();
         self.patches = Patches::of(&self.structures, mesh, domain);
@@ -314,6 +317,28 @@ impl VoronoiFlood {
         }
         if self.weather.as_ref().is_some_and(Weather::rains) {
             self.make_all_tiles()?;
+        }
+        Ok(())
+    }
+
+    /// Refuses sides and parts of them over which water is to come in and that have no cell: their water would be lost in silence.
+    fn check_sides(&self) -> Result<(), ModelError> {
+        let has_face = self.boundaries.have_faces();
+        let sides = ["west", "east", "south", "north"].map(|side| format!("flood.edges.{side}"));
+        let parts = (0..self.settings.edge_part.len()).map(|part| format!("flood.edge_part.{part}"));
+        let divided = self.boundaries.divided();
+        for (rule, key) in sides.into_iter().chain(parts).enumerate() {
+            // Parts may take the whole of a side.
+            if divided.get(rule) == Some(&true) {
+                continue;
+            }
+            let has_face = domain::any(self.solver.domain.as_ref(), has_face[rule]);
+            if self.boundaries.brings_by(rule) && !has_face {
+                return Err(setup(format!(
+                    "{key}: no water can come in there: no cell has the middle of its side there; make the part longer than the cells are \
+                     wide, or look whether the terrain has data there"
+                )));
+            }
         }
         Ok(())
     }

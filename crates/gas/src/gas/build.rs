@@ -139,7 +139,13 @@ impl<const D: usize> Setup<D> {
             .map(|(mass, velocity)| 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>())
             .sum();
         let per_direction = 2.0 * energy / (D * world.balls.len()) as f64;
-        sets.iter().map(|set| FASTEST * (per_direction / set.mass).sqrt().max(f64::MIN_POSITIVE)).collect()
+        // Balls of one name may differ: the lightest are the fastest.
+        let mut lightest: Vec<f64> = sets.iter().map(|set| set.mass).collect();
+        for (ball, record) in world.records.iter().enumerate() {
+            let least = &mut lightest[record.species as usize];
+            *least = least.min(world.mass(ball));
+        }
+        lightest.iter().map(|mass| FASTEST * (per_direction / mass).sqrt().max(f64::MIN_POSITIVE)).collect()
     }
 
     /// Distance up to which g(r) is counted.

@@ -151,16 +151,22 @@ impl<const D: usize> Gas<D> {
         let beyond = self.beyond(&snapshot);
         let energies = self.energies();
         let mut gauges = Vec::new();
+        let world = self.mover.world();
+        let mut masses = vec![0.0; snapshot.set.len()];
+        for (ball, record) in world.records.iter().enumerate() {
+            masses[record.id as usize] = world.mass(ball);
+        }
         for (number, set) in self.sets.iter().enumerate() {
             let (mut squares, mut count) = (0.0, 0.0);
             for (ball, &own) in snapshot.set.iter().enumerate() {
                 let velocity = snapshot.thermal_velocity(ball);
                 if own as usize == number {
-                    squares += velocity.iter().map(|v| v * v).sum::<f64>();
+                    // Balls of one name may differ.
+                    squares += masses[ball] * velocity.iter().map(|v| v * v).sum::<f64>();
                     count += 1.0;
                 }
             }
-            let temperature = set.mass * squares / (D as f64 * count * self.setup.boltzmann);
+            let temperature = squares / (D as f64 * count * self.setup.boltzmann);
             gauges.push((set.name.clone(), "temperature", "K", temperature));
             if self.sets.len() > 1 {
                 gauges.push((set.name.clone(), "kinetic_energy", "J", energies[number]));
@@ -283,7 +289,12 @@ impl<const D: usize> Model for Gas<D> {
             si: self.si,
             extent: world.extent(axis, world.in_window(self.shown)),
             p_value: self.maxwell_p_value(),
-            energies: self.energies().iter().zip(self.counts()).map(|(energy, count)| energy / count as f64).collect(),
+            energies: self
+                .thermal_energies()
+                .iter()
+                .zip(self.counts())
+                .map(|(energy, count)| energy / count as f64)
+                .collect(),
             temperature: self.temperature(),
         };
         self.measures.charts(&context)

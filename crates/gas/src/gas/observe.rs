@@ -124,10 +124,15 @@ impl<const D: usize> Gas<D> {
     pub fn temperature(&self) -> f64 {
         let world = self.mover.world();
         let mass: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
-        let drift: f64 = self.thermal_momentum().iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
+        let drift = self.drift_energy(&self.thermal_momentum(), mass);
         let freedom = self.setup.degrees_of_freedom(world.balls.len());
-        let bound = if freedom < (D * world.balls.len()) as f64 { drift } else { 0.0 };
-        2.0 * (self.thermal_energy() - bound) / (freedom * self.setup.boltzmann)
+        2.0 * (self.thermal_energy() - drift) / (freedom * self.setup.boltzmann)
+    }
+
+    /// Energy of the motion as a whole along the axes on which nothing changes it.
+    fn drift_energy(&self, momentum: &[f64; D], mass: f64) -> f64 {
+        let along = (0..D).filter(|axis| self.setup.conserves_momentum(*axis));
+        along.map(|axis| momentum[axis] * momentum[axis]).sum::<f64>() / (2.0 * mass)
     }
 
     /// Centre of mass at the time shown, as if the box did not repeat.
@@ -249,9 +254,11 @@ impl<const D: usize> Gas<D> {
         let count = world.balls.len();
         let total: f64 = (0..count).map(|ball| world.mass(ball)).sum();
         let freedom = self.setup.degrees_of_freedom(count);
-        let bound = freedom < (D * count) as f64;
+        // All axes, or their motion is not the same.
+        let bound = freedom == (D * (count - 1)) as f64;
         let momentum = self.thermal_momentum();
-        let drift: [f64; D] = if bound { momentum.map(|p| p / total) } else { [0.0; D] };
+        let along = |axis: usize| if self.setup.conserves_momentum(axis) { momentum[axis] / total } else { 0.0 };
+        let drift: [f64; D] = std::array::from_fn(along);
         let energy = self.thermal_energy() - 0.5 * total * drift.iter().map(|v| v * v).sum::<f64>();
         let Some(first) = Maxwell::new(D, freedom, energy, world.mass(0), total, bound) else { return f64::NAN };
         p_value((0..count).map(|ball| {
@@ -283,10 +290,20 @@ impl<const D: usize> Gas<D> {
     /// Kinetic energy of each set at the time shown.
     pub(super) fn energies(&self) -> Vec<f64> {
         let world = self.mover.world();
+        self.energies_by(|ball| world.state(ball, self.now()).1)
+    }
+
+    /// The same of the motion relative to the flow of a sheared box.
+    pub(super) fn thermal_energies(&self) -> Vec<f64> {
+        let world = self.mover.world();
+        self.energies_by(|ball| world.thermal_velocity(ball, self.now()))
+    }
+
+    fn energies_by(&self, velocity: impl Fn(usize) -> [f64; D]) -> Vec<f64> {
+        let world = self.mover.world();
         let mut sums = vec![0.0; self.sets.len()];
         for ball in 0..world.balls.len() {
-            let velocity = world.state(ball, self.now()).1;
-            let squares: f64 = velocity.iter().map(|v| v * v).sum();
+            let squares: f64 = velocity(ball).iter().map(|v| v * v).sum();
             sums[world.records[ball].species as usize] += 0.5 * world.mass(ball) * squares;
         }
         sums
@@ -515,8 +532,7 @@ impl<const D: usize> Gas<D> {
             }
         }
         let (kinetic, freedom) = (kinetic.value(), self.setup.degrees_of_freedom(world.balls.len()));
-        let bound = freedom < (D * world.balls.len()) as f64;
-        let drift = if bound { momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass) } else { 0.0 };
+        let drift = self.drift_energy(&momentum, mass);
         let lengths: [f64; D] =
             std::array::from_fn(|axis| world.extent(axis, now)).map(|[low, high]: [f64; 2]| high - low);
         // Centres stay a radius away from walls.

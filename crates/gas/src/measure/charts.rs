@@ -129,7 +129,11 @@ impl Measures {
             x: self.speed_axis(context, "Speed"),
             y: axis("Probability density", context.unit("s/m")),
             series: vec![
-                context.series(set, ChartStyle::Bars, density(&self.speeds[set], 0.0, largest)),
+                context.series(
+                    set,
+                    ChartStyle::Bars,
+                    density(&self.speeds[set], self.averaged * context.counts[set], [0.0, largest]),
+                ),
                 theory_series("Maxwell", curve),
             ],
             note: match context.p_value {
@@ -150,7 +154,11 @@ impl Measures {
             x: self.speed_axis(context, "Velocity along x"),
             y: axis("Probability density", context.unit("s/m")),
             series: vec![
-                context.series(set, ChartStyle::Bars, density(&self.velocities[set], -largest, largest)),
+                context.series(
+                    set,
+                    ChartStyle::Bars,
+                    density(&self.velocities[set], self.averaged * context.counts[set], [-largest, largest]),
+                ),
                 theory_series("Maxwell", curve),
             ],
             note: String::new(),
@@ -263,8 +271,7 @@ impl Measures {
 }
 
 /// Counts in bars from `low` to `high` as a probability density.
-fn density(counts: &[u64], low: f64, high: f64) -> Vec<[f64; 2]> {
-    let all: u64 = counts.iter().sum();
+fn density(counts: &[u64], all: usize, [low, high]: [f64; 2]) -> Vec<[f64; 2]> {
     let width = (high - low) / counts.len() as f64;
     let point = |(bar, &count): (usize, &u64)| [low + (bar as f64 + 0.5) * width, count as f64 / (all as f64 * width)];
     counts.iter().enumerate().map(point).collect()

@@ -41,9 +41,9 @@ impl Measures {
         if self.started.is_nan() { &[] } else { self.after(self.started) }
     }
 
-    /// Mean of a value between two samples, over equal parts of the time from `from` on.
+    /// Mean of a value between two samples, over equal parts of the time from `from` on, or since averages began anew.
     pub fn estimate(&self, from: f64, value: impl Fn(&[Sample]) -> f64) -> Estimate {
-        let samples = self.after(from);
+        let samples = self.after(from.max(self.started));
         if samples.len() < 2 {
             return Estimate { mean: f64::NAN, error: f64::NAN };
         }

@@ -42,7 +42,10 @@ impl Measures {
     /// How an even granular gas cools.
     fn haff<const D: usize>(&self, context: &Context<D>) -> Option<ChartSeries> {
         let (setup, start) = (context.setup, &self.samples[0]);
-        let cools = setup.restitution < 1.0 && context.sets.len() == 1;
+        let is_idle = |side: &Side| matches!(side, Side::Fixed | Side::Periodic);
+        let is_driven =
+            setup.shear.is_some() || setup.gravity != [0.0; D] || !setup.sides.iter().flatten().all(is_idle);
+        let cools = setup.restitution < 1.0 && context.sets.len() == 1 && !is_driven;
         let packing = context.packing(start.volume).filter(|_| cools)?;
         let thermal = (setup.boltzmann * start.temperature / context.sets[0].mass).sqrt();
         let rate = theory::collision_rate::<D>(packing, context.radius?, thermal);

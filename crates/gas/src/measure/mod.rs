@@ -95,7 +95,9 @@ impl Measures {
 
     /// Restarts the averages, with histograms up to other speeds; samples over time stay.
     pub fn begin_anew<const D: usize>(&mut self, setup: &Setup<D>, largest: Vec<f64>) {
-        let samples = std::mem::take(&mut self.samples);
+        let mut samples = std::mem::take(&mut self.samples);
+        // Counted from other places.
+        samples.iter_mut().for_each(|sample| sample.displacement.clear());
         *self = Measures { samples, ..Self::new(setup, self.speeds.len(), largest) };
     }
 

@@ -43,7 +43,8 @@ impl Pairs {
             })
         };
         let stride = balls.div_ceil(CENTRES).max(1);
-        let density = (balls as f64 - 1.0) / length.iter().product::<f64>();
+        // Centres stay a radius away from walls.
+        let density = (balls as f64 - 1.0) / snapshot.sample.open;
         for (number, position) in snapshot.position.iter().enumerate().step_by(stride) {
             if !inner(position) {
                 continue;

@@ -6,10 +6,14 @@ use crate::random::{direction, normal};
 use rand_chacha::ChaCha8Rng;
 
 impl<const D: usize> Setup<D> {
-    /// Parts of the motion of `balls` balls that are free: along periodic axes without gravity the momentum is conserved.
+    /// Whether the momentum along an axis is conserved: it is periodic, and there is no gravity along it.
+    pub(crate) fn conserves_momentum(&self, axis: usize) -> bool {
+        self.sides[axis][0] == Side::Periodic && self.gravity[axis] == 0.0
+    }
+
+    /// Parts of the motion of `balls` balls that are free: less those along axes on which the momentum is conserved.
     pub(crate) fn degrees_of_freedom(&self, balls: usize) -> f64 {
-        let free = |axis: &usize| self.sides[*axis][0] == Side::Periodic && self.gravity[*axis] == 0.0;
-        (D * balls) as f64 - (0..D).filter(free).count() as f64
+        (D * balls) as f64 - (0..D).filter(|axis| self.conserves_momentum(*axis)).count() as f64
     }
 
     /// Velocities of the balls of all species, in order.

@@ -23,6 +23,33 @@ fn pressure_and_collision_rate_of_a_fluid_are_those_known() {
     assert!(inside);
 }
 
+/// Balls of one name that differ in mass, in a box that repeats along one axis only.
+#[test]
+fn temperatures_are_those_of_all_balls_whatever_their_masses() {
+    for masses in [[1.0, 100.0], [100.0, 1.0]] {
+        let mut setup = Setup::<2>::new([20.0, 20.0]).measured(0.0, 0.5);
+        for (number, mass) in masses.into_iter().enumerate() {
+            let along = 1.0 / f64::sqrt(mass);
+            setup = setup.ball([5.0 + 10.0 * number as f64, 10.0], [0.0, along], 0.5, mass);
+        }
+        let gas = setup.build().unwrap();
+        let column = |gauge: &str| {
+            gas.gauge_columns()
+                .iter()
+                .position(|column| column.gauge == gauge && column.quantity == "temperature")
+                .unwrap()
+        };
+        let row = gas.gauge_row();
+        let own = gas.gauge_columns().iter().map(|column| column.gauge.clone()).find(|gauge| gauge != "gas").unwrap();
+        assert!((row[column("gas")] - 0.5).abs() < 1e-12 && (row[column(&own)] - 0.5).abs() < 1e-12, "{own} {row:?}");
+    }
+    let mut setup = Setup::<2>::new([20.0, 20.0]).side(0, 0, Side::Periodic).side(0, 1, Side::Periodic);
+    setup = setup.ball([5.0, 10.0], [0.0, 1.0], 0.5, 1.0);
+    // Its motion between the walls is heat: of two directions one is free.
+    let temperature = setup.build().unwrap().temperature();
+    assert!((temperature - 1.0).abs() < 1e-12, "{temperature}");
+}
+
 /// Flights that gravity bends: a ball flies as far between collisions as its mean speed over its collision rate, and none flies less far than nothing.
 #[test]
 fn paths_bent_by_gravity_are_as_long_as_the_mean_speed_says() {

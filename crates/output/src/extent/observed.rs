@@ -35,7 +35,11 @@ pub fn compare_extent(observed: &Path, terrain: &Terrain, max_depth: &[f32]) -> 
     let text = read_text(observed).map_err(OutputError::read(observed))?;
     let polygons = polygons_of_geojson(&text).map_err(|error| OutputError::content(observed, error))?;
     let polygons = terrain.polygons_to_own(polygons);
-    let observed_wet = draw(&polygons, terrain).map_err(|what| OutputError::content(observed, what))?;
+    let mut observed_wet = draw(&polygons, terrain).map_err(|what| OutputError::content(observed, what))?;
+    // Where the terrain has no data nothing is computed.
+    let columns = terrain.map_grid().columns;
+    let cells = observed_wet.iter_mut().enumerate();
+    cells.for_each(|(cell, wet)| *wet &= terrain.is_valid_cell(cell % columns, cell / columns));
     if !observed_wet.contains(&true) {
         let count = polygons.len();
         let what = format!(

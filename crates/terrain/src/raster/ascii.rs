@@ -6,6 +6,9 @@ use std::io::Read;
 use std::iter::Peekable;
 use std::path::Path;
 
+/// What marks cells without data where the header does not say it (ESRI).
+const DEFAULT_NO_DATA: f64 = -9999.0;
+
 /// What the header says; keys are case-insensitive.
 #[derive(Debug, Default)]
 struct Header {
@@ -97,7 +100,7 @@ fn read_whole(path: &Path, text: &[u8]) -> Result<Raster, TerrainError> {
     let mut values = Vec::with_capacity(cells);
     for (line, word) in words {
         let value: f64 = word.parse().map_err(|_| damaged(path, line, &format!("`{word}` is not a number")))?;
-        values.push(if header.no_data == Some(value) { f64::NAN } else { value });
+        values.push(if header.no_data.unwrap_or(DEFAULT_NO_DATA) == value { f64::NAN } else { value });
     }
     if values.len() != cells {
         let what = format!("its header says {columns} x {rows} = {cells} values, but there are {}", values.len());

@@ -1,6 +1,6 @@
 //! Other rasters over a terrain: roughness, initial depth.
 
-use super::{Raster, read_raster};
+use super::{Raster, read_values};
 use crate::frame::Frame;
 use crate::{Bounds, Terrain, TerrainError};
 use proj4rs::Proj;
@@ -21,14 +21,14 @@ pub struct RasterField {
 
 impl RasterField {
     /// Reads a raster to be evaluated over `terrain`. It is in the terrain's reference system, unless it names
-    /// another one.
+    /// another one; its values are taken as they are, also where the file names a unit of heights.
     ///
     /// # Errors
-    /// As [`read_raster`], where it names a system from or to which the terrain's places cannot be converted, and where it lies outside the
+    /// As [`read_raster`](crate::read_raster), where it names a system from or to which the terrain's places cannot be converted, and where it lies outside the
     /// terrain.
     pub fn open(path: impl AsRef<Path>, terrain: &Terrain) -> Result<Self, TerrainError> {
         let path = path.as_ref();
-        let raster = read_raster(path)?;
+        let raster = read_values(path)?;
         let frame = terrain.frame();
         let own = &terrain.map_grid().georeference.system;
         let other = match &raster.georeference.system {
@@ -71,6 +71,13 @@ impl RasterField {
     /// Warnings about the file, in sentences.
     pub fn warnings(&self) -> &[String] {
         &self.raster.warnings
+    }
+
+    /// Lowest and highest of its values; none without any.
+    pub fn range(&self) -> Option<[f64; 2]> {
+        let values = || self.raster.values.iter().copied().filter(|value| !value.is_nan());
+        let least = values().reduce(f64::min)?;
+        Some([least, values().fold(least, f64::max)])
     }
 
     /// South-west corner, m, and size of the cells `[eastwards, northwards]`, m, where they lie along the model's coordinates.

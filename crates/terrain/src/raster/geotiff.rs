@@ -1,8 +1,9 @@
 //! GeoTIFF, read with the `geotiff-reader` library.
 
-use super::{MapBox, Raster, Survey, Window, check_not_empty, check_size, in_memory, memory, outside};
+use super::{MapBox, Raster, Survey, Values, Window, check_not_empty, check_size, in_memory, memory, outside};
 use crate::system::{ReferenceSystem, height_unit};
 use crate::{Georeference, TerrainError};
+use geotiff_reader::geokeys::{self, GeoKey, GeoKeyDirectory, GeoKeyValue};
 use geotiff_reader::transform::GeoTransform;
 use geotiff_reader::{Error as ReaderError, GeoTiffFile, Result as ReaderResult};
 use std::path::Path;
@@ -12,8 +13,11 @@ use tiff_reader::TiffSample;
 /// block left out of a sparse file takes 16 bytes): a header that claims more is broken.
 const LARGEST_COMPRESSION: u64 = 20_000;
 
-/// Reads the first band of a GeoTIFF, whose first bytes say whether it is big-endian: all of it, or the cells in `part`.
-pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>) -> Result<Raster, TerrainError> {
+/// GDAL's own tag of metadata, XML: scale and offset of the samples among it.
+const GDAL_METADATA: u16 = 42112;
+
+/// Reads the first band of a GeoTIFF, whose first bytes say whether it is big-endian: all of it, or the cells in `part`. Heights become metres.
+pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>, kind: Values) -> Result<Raster, TerrainError> {
     let file = open(path)?;
     let size = [file.width() as usize, file.height() as usize];
     if part.is_none() {
@@ -21,7 +25,7 @@ pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>) -> Resu
     }
     check_compression(path, &file, big_endian)?;
     let format = check_bytes(path, &file)?;
-    let whole = place(path, &file)?;
+    let mut whole = place(path, &file)?;
     let window = match part {
         Some(part) => Window::within(&whole, size, part).ok_or_else(|| outside(path, part, &whole.outline(size)))?,
         None => Window::whole(size),
@@ -32,13 +36,55 @@ pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>) -> Resu
         warnings.push(format!("{} has {} bands; the first is used.", path.display(), file.band_count()));
     }
     let mut values = values(path, &file, &format, &window)?;
+    if let Some([scale, offset]) = scaling(&file) {
+        values.iter_mut().for_each(|value| *value = *value * scale + offset);
+        warnings.push(format!("{} gives its values times {scale} plus {offset}, as it says.", path.display()));
+    }
     let unit = height_unit(file.geokeys());
-    if unit != 1.0 {
+    if unit != 1.0 && kind == Values::Heights {
+        name_metres(&mut whole.keys);
         values.iter_mut().for_each(|value| *value *= unit);
         warnings.push(format!("{} gives its values in units of {unit} m; they were converted.", path.display()));
     }
     let [columns, rows] = window.size;
     Ok(Raster { columns, rows, values, georeference: whole.from_cell(window.first), warnings })
+}
+
+/// Scale and offset of the first band, where the file has them.
+fn scaling(file: &GeoTiffFile) -> Option<[f64; 2]> {
+    let image = file.tiff().ifd(file.base_ifd_index()).ok()?;
+    scaling_in(image.tag(GDAL_METADATA)?.value.as_str()?)
+}
+
+/// The same by the text of GDAL's metadata, as `<Item name="SCALE" sample="0" role="scale">0.1</Item>`.
+fn scaling_in(text: &str) -> Option<[f64; 2]> {
+    let of = |role: &str| {
+        text.split("<Item").skip(1).find_map(|item| {
+            let (attributes, rest) = item.split_once('>')?;
+            let is_first = !attributes.contains("sample=") || attributes.contains("sample=\"0\"");
+            let is_meant = is_first && attributes.contains(&format!("role=\"{role}\""));
+            let value: f64 = rest.split('<').next().filter(|_| is_meant)?.trim().parse().ok()?;
+            value.is_finite().then_some(value)
+        })
+    };
+    let (scale, offset) = (of("scale"), of("offset"));
+    let found = [scale.unwrap_or(1.0), offset.unwrap_or(0.0)];
+    (found != [1.0, 0.0]).then_some(found)
+}
+
+/// Has keys say that heights are in metres.
+fn name_metres(keys: &mut GeoKeyDirectory) {
+    // A vertical system that is one in feet has no key of its own in metres.
+    keys.keys.retain(|key| key.id != geokeys::VERTICAL_CS_TYPE || !is_in_feet(&key.value));
+    let metres = GeoKeyValue::Short(9001);
+    match keys.keys.iter_mut().find(|key| key.id == geokeys::VERTICAL_UNITS) {
+        Some(key) => key.value = metres,
+        None => keys.keys.push(GeoKey { id: geokeys::VERTICAL_UNITS, value: metres }),
+    }
+}
+
+fn is_in_feet(system: &GeoKeyValue) -> bool {
+    matches!(system, GeoKeyValue::Short(6360 | 8228))
 }
 
 /// Refuses a file whose header says more than its bytes can hold; returns how it stores its samples.
@@ -213,5 +259,31 @@ fn turn_over(values: &mut [f64], columns: usize) {
     for row in 0..rows / 2 {
         let (above, below) = values.split_at_mut((rows - 1 - row) * columns);
         above[row * columns..][..columns].swap_with_slice(&mut below[..columns]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scale_and_offset_are_those_of_the_first_band() {
+        let item = |sample: &str, role: &str, value: &str| {
+            format!("  <Item name=\"X\"{sample} role=\"{role}\">{value}</Item>\n")
+        };
+        let text = |items: &str| format!("<GDALMetadata>\n{items}</GDALMetadata>");
+        let first = " sample=\"0\"";
+        let both = item(first, "scale", "0.01") + &item(first, "offset", "-5");
+        assert_eq!(scaling_in(&text(&both)), Some([0.01, -5.0]));
+        assert_eq!(scaling_in(&text(&item("", "scale", "0.1"))), Some([0.1, 0.0]));
+        for none in [
+            item(" sample=\"1\"", "scale", "0.1"),
+            item(first, "scale", "1"),
+            item(first, "unittype", "m"),
+            item(first, "scale", "inf"),
+            String::new(),
+        ] {
+            assert_eq!(scaling_in(&text(&none)), None, "{none}");
+        }
     }
 }

@@ -81,7 +81,21 @@ impl Raster {
 /// A text that names the file, for one that is no such raster, damaged, too large (more than 100 million cells, or
 /// more than its bytes can hold), less than 2 cells wide or high, or without any data.
 pub fn read_raster(path: impl AsRef<Path>) -> Result<Raster, TerrainError> {
-    read(path.as_ref(), None)
+    read(path.as_ref(), None, Values::Heights)
+}
+
+/// Reads a raster whose values are no heights, as [`read_raster`] does: a unit of heights that the file names does not count.
+pub(crate) fn read_values(path: &Path) -> Result<Raster, TerrainError> {
+    read(path, None, Values::Others)
+}
+
+/// What the values of a raster are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Values {
+    /// Heights, in the unit that the file names.
+    Heights,
+    /// Something else, in its own unit.
+    Others,
 }
 
 /// Reads the cells of a raster that share area with `part`, as [`read_raster`] does; of a GeoTIFF in blocks only those
@@ -90,12 +104,12 @@ pub fn read_raster(path: impl AsRef<Path>) -> Result<Raster, TerrainError> {
 /// # Errors
 /// As [`read_raster`], and where no cell lies in `part`; a part without any data is no error.
 pub fn read_raster_part(path: impl AsRef<Path>, part: &MapBox) -> Result<Raster, TerrainError> {
-    read(path.as_ref(), Some(part))
+    read(path.as_ref(), Some(part), Values::Heights)
 }
 
-fn read(path: &Path, part: Option<&MapBox>) -> Result<Raster, TerrainError> {
+fn read(path: &Path, part: Option<&MapBox>, values: Values) -> Result<Raster, TerrainError> {
     let raster = match content(path)? {
-        Content::GeoTiff { big_endian } => geotiff::read(path, big_endian, part)?,
+        Content::GeoTiff { big_endian } => geotiff::read(path, big_endian, part, values)?,
         Content::Text(source) => ascii::read(path, &text(path, source)?, part)?,
     };
     let raster = checked(path, raster)?;

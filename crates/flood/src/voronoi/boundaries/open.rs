@@ -132,6 +132,27 @@ impl Boundaries {
         })
     }
 
+    /// Whether water may come in by a rule: those of the four sides, then of their parts.
+    pub fn brings_by(&self, rule: usize) -> bool {
+        self.rules[rule].brings()
+    }
+
+    /// Whether each side has parts with rules of their own.
+    pub fn divided(&self) -> [bool; 4] {
+        [0, 1, 2, 3].map(|side| self.parts.iter().any(|part| part.side == side))
+    }
+
+    /// Whether each rule of the sides and their parts holds at a face of this process.
+    pub fn have_faces(&self) -> Vec<bool> {
+        let mut found = vec![false; 4 + self.parts.len()];
+        for rule in self.of_faces.iter().flatten() {
+            if let Some(found) = found.get_mut(usize::from(*rule)) {
+                *found = true;
+            }
+        }
+        found
+    }
+
     /// Whether water may come in somewhere.
     pub fn bring(&self) -> bool {
         self.rules.iter().any(Boundary::brings)

@@ -153,7 +153,12 @@ fn chart(
 fn printed(unit: &str) -> String {
     // What counts up has no unit above the line: `per_s` is 1/s.
     let unit = unit.strip_prefix("per_").map_or_else(|| unit.to_owned(), |below| format!("1/{below}"));
-    unit.replace("_per_", "/").replace("m2", "m²").replace("m3", "m³").replace("s2", "s²")
+    // Several units below the line stand in brackets.
+    let unit = unit.replace("_per_", "/").replace("m2", "m²").replace("m3", "m³").replace("s2", "s²");
+    match unit.split_once('/') {
+        Some((above, below)) if below.contains('_') => format!("{above}/({})", below.replace('_', " ")),
+        _ => unit.replace('_', " "),
+    }
 }
 
 #[cfg(test)]
