@@ -130,7 +130,7 @@ impl<const D: usize> Gas<D> {
     }
 
     /// Energy of the motion as a whole along the axes on which nothing changes it.
-    fn drift_energy(&self, momentum: &[f64; D], mass: f64) -> f64 {
+    pub(super) fn drift_energy(&self, momentum: &[f64; D], mass: f64) -> f64 {
         let along = (0..D).filter(|axis| self.setup.conserves_momentum(*axis));
         along.map(|axis| momentum[axis] * momentum[axis]).sum::<f64>() / (2.0 * mass)
     }

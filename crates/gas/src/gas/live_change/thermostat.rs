@@ -72,9 +72,7 @@ impl<const D: usize> Gas<D> {
                 energy += 0.5 * own * velocity[axis] * velocity[axis];
             }
         }
-        let drift = momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
         let freedom = self.setup.degrees_of_freedom(world.balls.len());
-        let bound = if freedom < (D * world.balls.len()) as f64 { drift } else { 0.0 };
-        2.0 * (energy - bound) / (freedom * self.setup.boltzmann)
+        2.0 * (energy - self.drift_energy(&momentum, mass)) / (freedom * self.setup.boltzmann)
     }
 }
