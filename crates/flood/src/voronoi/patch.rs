@@ -70,16 +70,19 @@ impl Patch {
         self.area <= 0.0
     }
 
-    /// Mean level of its wet cells by area, m; none where all are dry.
+    /// Mean level of its water by volume, m: films on higher ground count as little as they are deep. None where all is dry.
     pub fn level(&self, solver: &Solver) -> Option<f64> {
-        let wet = self.cells.iter().map(|cell| *cell as usize).filter(|cell| solver.water[*cell].depth > 0.0);
-        let (mut sum, mut area) = (ExactSum::default(), ExactSum::default());
-        for cell in wet {
-            sum.add(solver.mesh.area[cell] * solver.water[cell].level);
-            area.add(solver.mesh.area[cell]);
+        let (mut sum, mut volume) = (ExactSum::default(), ExactSum::default());
+        for cell in self.cells.iter().map(|cell| *cell as usize) {
+            let water = &solver.water[cell];
+            let own = solver.mesh.area[cell] * water.depth;
+            if own > 0.0 {
+                sum.add(own * water.level);
+                volume.add(own);
+            }
         }
-        total(solver.domain.as_ref(), &mut [], &mut [&mut sum, &mut area]);
-        (area.value() > 0.0).then(|| sum.value() / area.value())
+        total(solver.domain.as_ref(), &mut [], &mut [&mut sum, &mut volume]);
+        (volume.value() > 0.0).then(|| sum.value() / volume.value())
     }
 
     /// Raises the surface evenly by a volume, m3, that comes with a velocity, m/s.

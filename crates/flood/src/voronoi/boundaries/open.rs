@@ -225,8 +225,8 @@ impl Boundaries {
             let shared = match &self.rules[number] {
                 Boundary::Discharge(table) => Some(table.integral(time, time + step) / step),
                 Boundary::Rating(rating) => {
-                    let level = self.mean_level(solver, number as u16);
-                    Some(-level.map_or(0.0, |level| rating.at(level).max(0.0)))
+                    let level = self.level_of_depth(solver, number as u16);
+                    Some(if level.is_finite() { -rating.at(level).max(0.0) } else { 0.0 })
                 }
                 _ => None,
             };
@@ -261,14 +261,6 @@ impl Boundaries {
                 self.now[stage][border] = now;
             }
         }
-    }
-
-    /// Mean level along the wet faces of a rule, m.
-    fn mean_level(&self, solver: &Solver, rule: u16) -> Option<f64> {
-        let own = own_faces_of(&self.of_faces, solver, rule);
-        let wet = own.filter(|(_, cell, _)| solver.water[*cell].depth > 0.0);
-        let [sum, length] = sums(solver, wet.map(|(_, cell, length)| [length * solver.water[cell].level, length]));
-        (length > 0.0).then(|| sum / length)
     }
 
     /// Level of the water along the faces of a rule, m; films count as little as they are deep.

@@ -18,24 +18,21 @@ fn conveyance(part: Part, level: f32, is_own: bool) -> f32 {
 @compute @workgroup_size(GROUP)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
     let own = discharges[group.x];
-    var along = vec2f(0.0);
     var by_depth = vec2f(0.0);
     for (var k = own.first + thread; k < own.end; k += GROUP) {
         let part = parts[k];
         let depth = water[part.cell].depth;
         if depth > 0.0 {
             let level = part.bed + depth + water[part.cell].shift;
-            along += part.length * vec2f(1.0, level);
             by_depth += part.length * depth * vec2f(1.0, level);
         }
     }
-    along = reduce_group(thread, along);
     by_depth = reduce_group(thread, by_depth);
     var discharge = 0.0;
     if own.is_rating == 0u {
         discharge = in_step(own.table, MEAN);
-    } else if along.x > 0.0 {
-        discharge = -max(value_at(own.table, vec2f(along.y / along.x, 0.0)), 0.0);
+    } else if by_depth.x > 0.0 {
+        discharge = -max(value_at(own.table, vec2f(by_depth.y / by_depth.x, 0.0)), 0.0);
     }
     let level = select(-FAR, by_depth.y / max(by_depth.x, 1e-37), by_depth.x > 0.0);
     let is_out = discharge < 0.0;

@@ -30,14 +30,14 @@ fn apply(place: InPatch, volume: vec2f, momentum: vec2f) -> vec4f {
     return vec4f(gained, energy, momentum.x + momentum.y);
 }
 
-// Mean level of the wet cells of a patch by area; `NO_LEVEL` where there are none.
+// Mean level of the water of a patch by volume; `NO_LEVEL` where there is none.
 fn level_of(thread: u32, own: Structure, end: u32) -> f32 {
     var sums = vec4f(0.0);
     for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
         let place = in_patches[k];
         let depth = water[place.cell].depth;
         if depth > 0.0 {
-            sums += vec4f(0.0, 0.0, place.area, place.area * (place.above + depth + water[place.cell].shift));
+            sums += place.area * depth * vec4f(0.0, 0.0, 1.0, place.above + depth + water[place.cell].shift);
         }
     }
     sums = reduce_group(thread, sums);
