@@ -7,7 +7,7 @@ use crate::{EnsembleError, Folder, Source};
 use corpuscle::Simulation;
 use corpuscle::model::{Chart, ChartAxis, ChartSeries, ChartStyle};
 use corpuscle::output::{EnsembleMap, EnsembleReport, EnsembleTable, GaugeTable};
-use corpuscle::terrain::{MapGrid, write_geotiff};
+use corpuscle::terrain::{MapGrid, Terrain, write_geotiff};
 use corpuscle_atomic_file::write_whole;
 use serde_json::Value;
 use std::fs;
@@ -280,8 +280,15 @@ impl Computation<'_> {
     }
 
     fn write_map(&self, name: &str, grid: &MapGrid, values: &[f64], maps: &mut Maps) -> Result<(), EnsembleError> {
-        let values: Vec<f32> =
-            values.iter().map(|value| if value.is_finite() { *value as f32 } else { f32::NAN }).collect();
+        // Where the terrain has no data nothing is known: that it is dry neither.
+        let has_data = |cell: usize| {
+            let valid = |terrain: &Terrain| terrain.is_valid_cell(cell % grid.columns, cell / grid.columns);
+            self.simulation.terrain().is_none_or(valid)
+        };
+        let known = |(cell, value): (usize, &f64)| {
+            if value.is_finite() && has_data(cell) { *value as f32 } else { f32::NAN }
+        };
+        let values: Vec<f32> = values.iter().enumerate().map(known).collect();
         let path = self.results.join(format!("{name}.tif"));
         write_geotiff(&path, grid, &values, NO_DATA).map_err(corpuscle::Error::from)?;
         maps.written += 1;
