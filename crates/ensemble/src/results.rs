@@ -7,7 +7,7 @@ use crate::{EnsembleError, Folder, Source};
 use corpuscle::Simulation;
 use corpuscle::model::{Chart, ChartAxis, ChartSeries, ChartStyle};
 use corpuscle::output::{EnsembleMap, EnsembleReport, EnsembleTable, GaugeTable};
-use corpuscle::terrain::{MapGrid, Terrain, write_geotiff};
+use corpuscle::terrain::{MapGrid, write_geotiff};
 use corpuscle_atomic_file::write_whole;
 use serde_json::Value;
 use std::fs;
@@ -282,8 +282,8 @@ impl Computation<'_> {
     fn write_map(&self, name: &str, grid: &MapGrid, values: &[f64], maps: &mut Maps) -> Result<(), EnsembleError> {
         // Where the terrain has no data nothing is known: that it is dry neither.
         let has_data = |cell: usize| {
-            let valid = |terrain: &Terrain| terrain.is_valid_cell(cell % grid.columns, cell / grid.columns);
-            self.simulation.terrain().is_none_or(valid)
+            let [column, row] = [cell % grid.columns, cell / grid.columns];
+            self.simulation.terrain().is_none_or(|terrain| terrain.is_valid_cell(column, row))
         };
         let known = |(cell, value): (usize, &f64)| {
             if value.is_finite() && has_data(cell) { *value as f32 } else { f32::NAN }
