@@ -3,7 +3,7 @@
 use crate::Particle;
 use crate::setup::setup;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Flood as Settings, Friction, LandUse, Manning};
+use corpuscle_scene::{Flood as Settings, Friction, LARGEST_MANNING, LandUse, Manning};
 use corpuscle_terrain::{RasterField, Terrain};
 use std::path::Path;
 

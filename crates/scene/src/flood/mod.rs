@@ -213,6 +213,9 @@ pub enum FloodUnits {
     Us,
 }
 
+/// Largest value that is taken for Manning's n, s/m^(1/3): that of the roughest ground is about 0.2, and what is above this is Strickler's 1/n.
+pub const LARGEST_MANNING: f64 = 1.0;
+
 /// Manning's roughness.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(

@@ -4,13 +4,10 @@ mod ground;
 
 use super::{Check, Checked};
 use crate::{
-    Adaptive, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
-    StartVelocity, Water,
+    Adaptive, Block, Edge, Field, Finer, Flood, Gauge, Inflow, LARGEST_MANNING, Manning, Obstacle, Problem, Scheme,
+    Series, SphSwe, StartVelocity, Water,
 };
 use std::collections::HashMap;
-
-/// Manning's n of the roughest ground is about 0.2; what is above this is Strickler's 1/n.
-const LARGEST_MANNING: f64 = 1.0;
 
 /// Why scheme sph-swe is refused what it does not have.
 const OF_VORONOI: &str = "is for scheme = \"voronoi\", the default; scheme sph-swe is the published one, without it";
