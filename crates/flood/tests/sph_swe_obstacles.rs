@@ -104,6 +104,9 @@ fn obstacles_come_from_files_and_bad_ones_are_named() {
     let houses = with("houses.csv").unwrap();
     let inside = |x: f64, y: f64| houses.particles().iter().any(|p| (p.x - x).hypot(p.y - y) < 0.7);
     assert!(!inside(8.0, 6.0) && !inside(23.0, 6.0) && inside(15.0, 6.0));
+    // Of a town some houses may stand beyond the terrain.
+    write("town.csv", "x, y, name\n505,5,a\n509,5,a\n509,9,a\n20,5,b\n24,5,b\n24,9,b\n");
+    with("town.csv").unwrap();
     let refused = |file: &str| with(file).err().expect(file).to_string();
     assert!(refused("house.geojson").contains("outside the terrain"));
     assert!(refused("lines.geojson").contains("no polygon"));

@@ -505,6 +505,21 @@ fn water_starts_by_expressions_and_rasters() {
     let missing =
         open("level_m = 1, velocity_m_per_s = { east = \"u.asc\", north = \"w.asc\" }").map(|_| ()).unwrap_err();
     assert!(missing.to_string().contains("w.asc"), "{missing}");
+    // Strickler's k, and a mark that the file does not name.
+    for (name, value) in [("k.asc", "30"), ("marked.asc", "-1")] {
+        let rows = format!("0.03 {value} 0.03\n").repeat(3);
+        let text = format!("ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 22\n{rows}");
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let refused = open(&format!(
+            "level_m = 1 }}]\nmanning = {{ raster = \"{name}\" }}\ninflow = [{{ name = \"a\", at = [5, 5], discharge_m3_per_s = 0"
+        ));
+        let refused = refused.map(|_| ()).unwrap_err().to_string();
+        assert!(refused.contains(name) && refused.contains("no Manning's n"), "{refused}");
+    }
+    let beside = open("level_m = 1 }]\nfiner = [{ polygon = [[500, 5], [510, 5], [510, 9]], spacing_m = 0.5")
+        .map(|_| ())
+        .unwrap_err();
+    assert!(beside.to_string().contains("flood.finer.0 lies outside the terrain"), "{beside}");
 }
 
 /// Linear theory of wavemakers in shallow water: the height of the wave is k times depth times stroke (Dean & Dalrymple 1991, section 6.2). What the

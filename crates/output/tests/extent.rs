@@ -99,6 +99,32 @@ fn an_extent_compared_with_itself_scores_full() {
 }
 
 #[test]
+fn where_the_terrain_has_no_data_nothing_is_missed() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = terrain(folder.path(), None, [1000.0, 2000.0], 10.0);
+    extent(&whole, folder.path());
+    // The same terrain, cut out to its western part: half of the lake is not in it.
+    let path = folder.path().join("dem.asc");
+    let text = fs::read_to_string(&path).unwrap();
+    let cut = |line: &str| {
+        let cells = line.split_whitespace().enumerate();
+        cells
+            .map(|(column, height)| if column < 15 { format!("{height} ") } else { "-9999 ".into() })
+            .collect::<String>()
+            + "\n"
+    };
+    let is_row = |line: &str| line.split_whitespace().count() == 40;
+    let rows: String = text.lines().map(|line| if is_row(line) { cut(line) } else { format!("{line}\n") }).collect();
+    fs::write(&path, rows).unwrap();
+    let file = TerrainFile { path, crs: None, no_data: NoData::Wall };
+    let western = Terrain::open(&corpuscle_scene::Terrain::File(file), 1, folder.path()).unwrap();
+    let mut computed = depths();
+    computed.iter_mut().enumerate().filter(|(cell, _)| cell % 40 >= 15).for_each(|(_, depth)| *depth = f32::NAN);
+    let scores = compare_extent(&folder.path().join("extent.geojson"), &western, &computed).unwrap();
+    assert_eq!((scores.hit_rate, scores.critical_success_index), (1.0, 1.0));
+}
+
+#[test]
 fn nothing_wet_is_an_empty_extent() {
     let folder = tempfile::tempdir().unwrap();
     let terrain = terrain(folder.path(), None, [0.0, 0.0], 10.0);
