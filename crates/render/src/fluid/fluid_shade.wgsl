@@ -35,8 +35,8 @@ fn unfold(packed: u32) -> vec3f {
     return normalize(vec3f(select((1.0 - abs(flat.yx)) * signs, flat, up >= 0.0), up));
 }
 
-// What is behind the surface in the direction of the refracted light, where its way in water ends.
-fn seen_through(pixel: vec2i, place: vec3f, way: vec3f) -> vec3f {
+// What is behind the surface in the direction of the refracted light, where its way in water ends; 1 in the last where that is ground in the picture.
+fn seen_through(pixel: vec2i, place: vec3f, way: vec3f) -> vec4f {
     let straight = (vec2f(pixel) + 0.5) / view.frame.xy;
     // Where the ground is cut off, so is the view.
     let end = vec3f(clamp(place.xy + way.xy, fluid.within.xy, fluid.within.zw), place.z + way.z);
@@ -51,7 +51,8 @@ fn seen_through(pixel: vec2i, place: vec3f, way: vec3f) -> vec3f {
     let depth = textureLoad(behind_depth, clamp(vec2i(uv * view.frame.xy), vec2i(0), vec2i(view.frame.xy) - 1), 0);
     let met = world_at_pixel(uv * view.frame.xy, max(depth, 1e-6)).xy;
     let past = any(met < fluid.within.xy) || any(met > fluid.within.zw);
-    return select(textureSampleLevel(behind_colour, linear, uv, 0.0).rgb, BED, past);
+    let light = select(textureSampleLevel(behind_colour, linear, uv, 0.0).rgb, BED, past);
+    return vec4f(light, select(1.0, 0.0, past || depth == 0.0));
 }
 
 // Water in the line of sight, m. Beyond the border of what is drawn there are no particles whose share could be added.
@@ -104,7 +105,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let steep = max(-dot(refracted, normal), 0.1);
     let path = water * cosine / steep;
     let shine = sunshine_by(FEW_SHADOW_TAPS, place, normal, vec2f(pixel));
-    var ground = seen_through(pixel, place, refracted * path / view.frame.z);
+    let seen = seen_through(pixel, place, refracted * path / view.frame.z);
+    var ground = seen.rgb;
     // Waves gather light on the bed where the water is neither a film nor deep.
     let gathered = shine * sqrt(moving) * (1.0 - exp(-8.0 * path)) * exp(-1.2 * path);
     if select(0.0, gathered, fluid.ripples.y > 0.0) > 0.01 {
@@ -116,7 +118,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let left = exp(-fluid.absorption.rgb * (path + path * steep / down));
     let daylight = view.sunlight.rgb * max(dot(normal, view.sun.xyz), 0.0) * shine * 0.4 + light_from_all_round(normal.z);
     // Where water is so thin that all light goes through, its bed is as dark as wet ground beside it.
-    let bed_seen = ground * left * (1.0 - WET * left);
+    let bed_seen = ground * left * (1.0 - WET * seen.a * left);
     let inner = bed_seen + fluid.colour.rgb * daylight * (1.0 - left);
 
     let fresnel = mirrored(cosine, STRAIGHT) * closed;
