@@ -5,7 +5,9 @@ mod state;
 #[cfg(feature = "gpu")]
 mod upload;
 
-pub(crate) use open::{Boundaries, CROSSINGS, FEWEST_CROSSINGS, LAG};
+pub(crate) use open::Boundaries;
+#[cfg(feature = "gpu")]
+pub(crate) use open::{CROSSINGS, FEWEST_CROSSINGS, LAG};
 pub(crate) use state::state;
 
 use super::fluxes::{Crossing, own_thrust_at_border};
