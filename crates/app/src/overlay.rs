@@ -35,7 +35,7 @@ pub struct Over<'a> {
 }
 
 /// Height in points below which a picture has no key of colours.
-const SMALL: f32 = 260.0;
+const SMALL: f32 = 280.0;
 
 impl Over<'_> {
     /// Draws the overlay; returns the height of its legend, points.
