@@ -550,9 +550,10 @@ def test_memory_of_a_run_does_not_grow_with_maps(tmp_path: Path, without_fsync: 
             return peak_of(lambda: ensemble.run(scene, plan, tmp_path / str(members), executor))
 
     peak(2)  # imports
-    few, many = peak(10), peak(60)
+    # So many that it does not matter which members run beside each other at a peak, some 300 kB.
+    few, many = peak(10), peak(210)
     # A member's record and its row of the plan are some kilobytes; its maps would be 58 kB.
-    assert many - few < 50 * 5000, (few, many)
+    assert many - few < 200 * 5000, (few, many)
 
 
 # Files of results
