@@ -5,6 +5,7 @@
 //! and a new one is searched then; no event of it can be earlier.
 
 mod ahead;
+mod compiled_once;
 mod event;
 mod grid;
 mod near;

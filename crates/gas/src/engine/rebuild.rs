@@ -2,6 +2,7 @@
 
 use super::Engine;
 use super::ahead::Ahead;
+use super::compiled_once::compiled_once;
 use super::event::{Event, What};
 use super::grid::Grid;
 use super::queue::Queue;
@@ -21,6 +22,10 @@ impl<const D: usize> Engine<D> {
     /// Begins a new window now: all balls at the same time, in space-filling order, in new cells, with everything predicted
     /// afresh.
     pub fn rebuild(&mut self) {
+        compiled_once!(self.rebuild_in_mode());
+    }
+
+    fn rebuild_in_mode(&mut self) {
         in_mode!(self.world.motion(), M => self.rebuild_as::<M>());
     }
 

@@ -1,6 +1,7 @@
 //! The loop over events.
 
 use super::Engine;
+use super::compiled_once::compiled_once;
 use crate::method::Pause;
 use crate::world::{Mode, NONE, in_mode};
 use multiversion::multiversion;
@@ -11,6 +12,10 @@ const EVENTS_PER_WINDOW: u64 = 60;
 impl<const D: usize> Engine<D> {
     /// Handles events up to `until` (in the window), `most` at most.
     pub fn run(&mut self, until: f64, most: u64) -> Pause {
+        compiled_once!(self.run_in_mode(until: f64, most: u64) -> Pause)
+    }
+
+    fn run_in_mode(&mut self, until: f64, most: u64) -> Pause {
         in_mode!(self.world.motion(), M => handle::<D, M>(self, until, most))
     }
 
@@ -130,6 +135,10 @@ impl<const D: usize> Engine<D> {
 
     /// Updates the events of balls after a wall's motion changed now by its schedule: those that it will hit before their next event.
     pub fn wall_changed(&mut self, wall: usize) {
+        compiled_once!(self.wall_changed_in_mode(wall: usize));
+    }
+
+    fn wall_changed_in_mode(&mut self, wall: usize) {
         in_mode!(self.world.motion(), M => self.wall_changed_as::<M>(wall));
     }
 
