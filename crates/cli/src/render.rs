@@ -114,6 +114,7 @@ struct DrawnRun {
     container: Option<Container>,
     pictures: Pictures,
     inset: Option<(GaugeColumn, GaugeTable)>,
+    has_si_units: bool,
 }
 
 impl DrawnRun {
@@ -124,6 +125,7 @@ impl DrawnRun {
         }
         let files = FrameFiles::list(folder, |index| time_of(&scene.run, index)).map_err(corpuscle::Error::from)?;
         let paths = followed_paths(folder).map_err(corpuscle::Error::from)?;
+        let has_si_units = corpuscle::models::of(&scene).is_ok_and(|kind| kind.has_si_units(&scene));
         let simulation = Simulation::open_to_restore(scene, folder)?;
         let pictures = Pictures::open(&simulation, settings)?;
         let walls = WallPlaces::read(folder).map_err(corpuscle::Error::from)?;
@@ -131,7 +133,7 @@ impl DrawnRun {
             Some(name) => Some(gauge(name, simulation.model().gauge_columns(), folder)?),
             None => None,
         };
-        Ok(Self { files, paths, walls, container: simulation.model().container(), pictures, inset })
+        Ok(Self { files, paths, walls, container: simulation.model().container(), pictures, inset, has_si_units })
     }
 
     /// Draws a frame beside what is on a sheet.
@@ -139,7 +141,8 @@ impl DrawnRun {
         let frame = self.files.read(index).map_err(corpuscle::Error::from)?;
         let container = self.container.map(|container| self.walls.container(container, frame.time));
         let moment = Moment { frame: &frame, on_device: None, paths: &self.paths, container };
-        let inset = self.inset.as_ref().and_then(|(column, table)| gauge_chart(column, table, frame.time));
+        let inset =
+            self.inset.as_ref().and_then(|(column, table)| gauge_chart(column, table, frame.time, self.has_si_units));
         self.pictures.set_inset(inset);
         match overlay {
             OverlayKind::Drawn => sheet.add(self.pictures.draw(&moment)?, None),

@@ -41,6 +41,9 @@ pub struct TimeUnit {
 }
 
 impl TimeUnit {
+    /// Time in reduced units, which has no unit.
+    pub const REDUCED: Self = Self { name: "", seconds: 1.0, steps: &[] };
+
     /// The unit for a run of this length, s.
     pub fn of(length: f64) -> Self {
         match length {

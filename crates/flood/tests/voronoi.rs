@@ -567,6 +567,9 @@ fn what_a_paddle_sweeps_is_booked() {
     );
     let jumps = "spacing_m = 1\nedges.west.paddle = { csv = \"missing.csv\" }";
     assert!(basin(jumps, 1, |_, _| 0.0).map(|_| ()).unwrap_err().to_string().contains("missing.csv"));
+    let leaves = "spacing_m = 1\nedges.west.paddle = [[0, 0], [20, 300]]";
+    let refusal = basin(leaves, 1, |_, _| 0.0).map(|_| ()).unwrap_err().to_string();
+    assert!(refusal.contains("moves 300 m to and fro"), "{refusal}");
 }
 
 /// A block of water that falls: as much as written, whatever the spacing of the cells comes to, and all of it on the ground in the end.

@@ -126,3 +126,18 @@ fn links_too_close_for_the_particles_are_refused() {
     let error = VoronoiFlood::new(&scene.flood, 1, Path::new("."), common::terrain(&scene)).err().unwrap().to_string();
     assert!(error.contains("'pipe'") && error.contains("10.000 m apart"), "{error}");
 }
+
+#[test]
+fn a_culvert_shorter_than_its_way_is_warned_of() {
+    let warnings = |length: f64| {
+        let law = format!("{{ culvert = {{ diameter_m = 1.0, length_m = {length} }} }}");
+        let keys = format!("link = [{{ name = \"pipe\", from = [15, 15], to = [50, 15], law = {law} }}]");
+        pools([2.0, 1.5], 2.5, &keys).warnings()
+    };
+    assert!(warnings(30.0).iter().all(|warning| !warning.contains("pipe")));
+    let short = warnings(1.0);
+    assert!(
+        short.iter().any(|warning| warning.contains("'pipe' is 1 m long") && warning.contains("35.0 m")),
+        "{short:?}"
+    );
+}

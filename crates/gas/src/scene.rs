@@ -66,6 +66,7 @@ fn make<const D: usize>(written: &scene::Gas, seed: u64, until: f64, folder: &Pa
     let samples = (SAMPLES_PER_RUN * (MAX_BALLS_AT_FULL_RATE / count as f64).min(1.0)).max(40.0).round();
     setup.measure = Measure {
         from: written.measure.from_s.unwrap_or(0.0),
+        until: Some(until),
         every: Some(until / samples),
         speed_bins: written.measure.speed_bins,
         profile_axis: written.measure.profile_axis.index(),

@@ -15,7 +15,7 @@ use super::solver::Solver;
 use super::start::{self, StartWater};
 use super::step::drops;
 use super::structures::Patches;
-use super::structures::Structures;
+use super::structures::{Structures, warn_of_links};
 use super::{Inflow, State, VoronoiFlood, domain, finer, walls};
 use crate::friction::Roughness;
 use crate::setup::{self, setup};
@@ -191,7 +191,8 @@ impl VoronoiFlood {
         let (periodic, mirrors, brings) = (boundaries.periodic(), boundaries.mirrors(), boundaries.brings());
         let obstacles = Arc::new(obstacles::open(&settings, &terrain, folder, 4.0 * spacing)?);
         let points = setup::point_gauges(&settings, &terrain)?;
-        let warnings = setup::warn_of_gauges(&points, &settings, &obstacles.all, &terrain);
+        let mut warnings = setup::warn_of_gauges(&points, &settings, &obstacles.all, &terrain);
+        warnings.extend(warn_of_links(&settings, &terrain));
         let mut layout = Layout::new(terrain.bounds(), periodic, spacing, seed);
         let roughness = Roughness::open(&settings, &terrain, folder)?;
         let slowing = Slowing::of(&roughness, gravity);

@@ -138,7 +138,7 @@ impl<const D: usize> Setup<D> {
             .map(|ball| (world.mass(ball), world.thermal_velocity(ball, world.balls[ball].time)))
             .map(|(mass, velocity)| 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>())
             .sum();
-        let per_direction = 2.0 * energy / (D * world.balls.len()) as f64;
+        let per_direction = 2.0 * (energy - self.energy_as_a_whole(world)) / (D * world.balls.len()) as f64;
         // Balls of one name may differ: the lightest are the fastest.
         let mut lightest: Vec<f64> = sets.iter().map(|set| set.mass).collect();
         for (ball, record) in world.records.iter().enumerate() {
@@ -146,6 +146,16 @@ impl<const D: usize> Setup<D> {
             *least = least.min(world.mass(ball));
         }
         lightest.iter().map(|mass| FASTEST * (per_direction / mass).sqrt().max(f64::MIN_POSITIVE)).collect()
+    }
+
+    /// Energy of the motion as a whole along the axes on which nothing changes it; 0 of one ball.
+    fn energy_as_a_whole(&self, world: &World<D>) -> f64 {
+        let balls = || 0..world.balls.len();
+        let mass: f64 = balls().map(|ball| world.mass(ball)).sum();
+        let velocity = |ball: usize| world.thermal_velocity(ball, world.balls[ball].time);
+        let momentum = |axis: usize| balls().map(|ball| world.mass(ball) * velocity(ball)[axis]).sum::<f64>();
+        let along = (0..D).filter(|axis| world.balls.len() > 1 && self.conserves_momentum(*axis));
+        along.map(|axis| momentum(axis).powi(2)).sum::<f64>() / (2.0 * mass)
     }
 
     /// Distance up to which g(r) is counted.

@@ -30,7 +30,11 @@ impl<const D: usize> Gas<D> {
             ("energy", "J", self.energy()),
             ("collisions", "", self.collisions() as f64),
             ("collision_rate", "per_s", rate(&|| collision_rate(&recent) / self.len() as f64)),
-            ("mean_free_path", "m", rate(&|| mean_free_path(&recent))),
+            (
+                "mean_free_path",
+                "m",
+                if self.drifts_periodically() { f64::NAN } else { rate(&|| mean_free_path(&recent)) },
+            ),
             ("pressure_virial", pressure, rate(&|| pressure_virial::<D>(&recent))),
         ];
         let world = self.mover.world();
@@ -330,6 +334,12 @@ impl<const D: usize> Model for Gas<D> {
 
     fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
+        let from = self.setup.measure.from;
+        if let Some(until) = self.setup.measure.until.filter(|until| from >= *until) {
+            warnings.push(format!(
+                "gas.measure.from_s = {from}: the run ends at {until}, so nothing is averaged, and all that is has no value"
+            ));
+        }
         if let Some((overlaps, missed, deepest)) = self.faults().filter(|(overlaps, missed, _)| overlaps + missed > 0) {
             warnings.push(format!(
                 "fixed steps: {overlaps} overlaps were found, the deepest {deepest:.3} of a radius, and {missed} hits were \

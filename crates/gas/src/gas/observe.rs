@@ -15,6 +15,9 @@ const RECENT: usize = 10;
 /// Parts of the second half of the time, from which the error of a diffusion coefficient is found.
 const DIFFUSION_PARTS: usize = 10;
 
+/// Momentum of the whole over the sum of the balls' momenta above which a gas moves as a whole: more than rounding.
+const LEAST_DRIFT: f64 = 1e-9;
+
 impl<const D: usize> Gas<D> {
     /// The time shown, counted in the window.
     pub(super) fn now(&self) -> f64 {
@@ -133,6 +136,23 @@ impl<const D: usize> Gas<D> {
     pub(super) fn drift_energy(&self, momentum: &[f64; D], mass: f64) -> f64 {
         let along = (0..D).filter(|axis| self.setup.conserves_momentum(*axis));
         along.map(|axis| momentum[axis] * momentum[axis]).sum::<f64>() / (2.0 * mass)
+    }
+
+    /// Velocity of the gas as a whole along the axes on which nothing changes it, from the velocities relative to the flow; 0 where it is no more
+    /// than rounding, and of one ball.
+    fn drift(&self, now: f64) -> [f64; D] {
+        let world = self.mover.world();
+        let (mut mass, mut momentum, mut magnitude) = (0.0, [0.0; D], 0.0);
+        for ball in 0..world.balls.len() {
+            let (own, velocity) = (world.mass(ball), world.thermal_velocity(ball, now));
+            mass += own;
+            magnitude += own * speed(&velocity);
+            (0..D).for_each(|axis| momentum[axis] += own * velocity[axis]);
+        }
+        let drifts =
+            |axis: usize| self.setup.conserves_momentum(axis) && momentum[axis].abs() > LEAST_DRIFT * magnitude;
+        let is_gas = world.balls.len() > 1;
+        std::array::from_fn(|axis| if is_gas && drifts(axis) { momentum[axis] / mass } else { 0.0 })
     }
 
     /// Centre of mass at the time shown, as if the box did not repeat.
@@ -293,10 +313,11 @@ impl<const D: usize> Gas<D> {
         self.energies_by(|ball| world.state(ball, self.now()).1)
     }
 
-    /// The same of the motion relative to the flow of a sheared box.
+    /// The same of the motion relative to the flow of a sheared box and to the motion as a whole.
     pub(super) fn thermal_energies(&self) -> Vec<f64> {
         let world = self.mover.world();
-        self.energies_by(|ball| world.thermal_velocity(ball, self.now()))
+        let drift = self.drift(self.now());
+        self.energies_by(|ball| less(&world.thermal_velocity(ball, self.now()), &drift))
     }
 
     fn energies_by(&self, velocity: impl Fn(usize) -> [f64; D]) -> Vec<f64> {
@@ -373,6 +394,9 @@ impl<const D: usize> Gas<D> {
 
     /// Length of path between two collisions of a ball, since averages began.
     pub fn mean_free_path(&self) -> Estimate {
+        if self.drifts_periodically() {
+            return Estimate { mean: f64::NAN, error: f64::NAN };
+        }
         self.measures.estimate(self.setup.measure.from, mean_free_path)
     }
 
@@ -453,12 +477,17 @@ impl<const D: usize> Gas<D> {
         growth(samples, self.setup.measure.lag_collisions / collisions_per_time, moments)
     }
 
+    /// True where the gas moves as a whole along an axis on which nothing changes that: it flies farther than its heat alone makes it.
+    pub(super) fn drifts_periodically(&self) -> bool {
+        self.drift(self.now()) != [0.0; D]
+    }
+
     /// True where the gas moves as a whole, and carries momentum and energy along.
     fn drifts(&self) -> bool {
         let world = self.mover.world();
         let magnitudes: f64 =
             (0..world.balls.len()).map(|ball| world.mass(ball) * speed(&world.balls[ball].velocity)).sum();
-        speed(&self.momentum()) > 1e-9 * magnitudes
+        speed(&self.momentum()) > LEAST_DRIFT * magnitudes
     }
 
     fn mean_temperature(&self) -> f64 {
@@ -543,7 +572,7 @@ impl<const D: usize> Gas<D> {
         Sample {
             time,
             temperature: 2.0 * (kinetic - drift) / (freedom * self.setup.boltzmann),
-            kinetic,
+            kinetic: kinetic - drift,
             volume: lengths.iter().product(),
             open: open.iter().product(),
             collisions: world.tally.collisions,
@@ -574,6 +603,7 @@ impl<const D: usize> Gas<D> {
             unwrapped: vec![[0.0; D]; count],
             velocity: vec![[0.0; D]; count],
             thermal: Vec::new(),
+            drift: self.drift(now),
             slid: world.field.slid_at(now),
             set: vec![0; count],
             extent: std::array::from_fn(|axis| world.extent(axis, now)),
@@ -586,14 +616,19 @@ impl<const D: usize> Gas<D> {
             (snapshot.position[number], snapshot.velocity[number]) = (position, velocity);
             snapshot.set[number] = record.species;
         }
-        if world.field.is_sheared() {
+        if world.field.is_sheared() || snapshot.drift != [0.0; D] {
             snapshot.thermal = vec![[0.0; D]; count];
             for (ball, record) in world.records.iter().enumerate() {
-                snapshot.thermal[record.id as usize] = world.thermal_velocity(ball, now);
+                snapshot.thermal[record.id as usize] = less(&world.thermal_velocity(ball, now), &snapshot.drift);
             }
         }
         snapshot
     }
+}
+
+/// A velocity relative to another.
+fn less<const D: usize>(velocity: &[f64; D], other: &[f64; D]) -> [f64; D] {
+    std::array::from_fn(|axis| velocity[axis] - other[axis])
 }
 
 /// Pressure from the virial between the first and the last of some samples.

@@ -115,7 +115,7 @@ impl Measures {
         self.samples.push(sample);
     }
 
-    /// Mean-square displacement of each set since averages began.
+    /// Mean-square displacement of each set since averages began, relative to the motion as a whole.
     pub fn displacements<const D: usize>(&self, snapshot: &Snapshot<D>) -> Vec<f64> {
         let sets = self.speeds.len();
         let (mut sums, mut counts) = (vec![0.0; sets], vec![0.0; sets]);
@@ -124,7 +124,8 @@ impl Measures {
         for (number, start) in self.starts.chunks_exact(D).enumerate() {
             let place = &snapshot.unwrapped[number];
             let set = snapshot.set[number] as usize;
-            sums[set] += (first..D).map(|axis| (place[axis] - start[axis]).powi(2)).sum::<f64>();
+            let carried = snapshot.drift.map(|velocity| velocity * (snapshot.sample.time - self.started));
+            sums[set] += (first..D).map(|axis| (place[axis] - start[axis] - carried[axis]).powi(2)).sum::<f64>();
             counts[set] += 1.0;
         }
         sums.iter().zip(counts).map(|(sum, count)| sum / count).collect()

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Sample {
     pub time: f64,
     pub temperature: f64,
-    /// Kinetic energy; in a sheared box that of the motion relative to the flow.
+    /// Kinetic energy of the motion relative to that of the whole and, in a sheared box, to the flow.
     pub kinetic: f64,
     pub volume: f64,
     /// Area (in three dimensions volume) open to the balls' centres.
@@ -41,8 +41,10 @@ pub(crate) struct Snapshot<const D: usize> {
     /// As if the box did not repeat.
     pub unwrapped: Vec<[f64; D]>,
     pub velocity: Vec<[f64; D]>,
-    /// Velocities relative to the flow, in a sheared box; else empty.
+    /// Velocities relative to the flow and to the motion as a whole, where there is one of them; else empty.
     pub thermal: Vec<[f64; D]>,
+    /// Velocity as a whole along the axes on which nothing changes it.
+    pub drift: [f64; D],
     /// How far the image above has slid, in a sheared box; else 0.
     pub slid: f64,
     pub set: Vec<u32>,
@@ -52,7 +54,7 @@ pub(crate) struct Snapshot<const D: usize> {
 }
 
 impl<const D: usize> Snapshot<D> {
-    /// Velocity of a ball relative to the flow of a sheared box.
+    /// Velocity of a ball relative to the flow of a sheared box and to the motion as a whole.
     pub fn thermal_velocity(&self, number: usize) -> &[f64; D] {
         self.thermal.get(number).unwrap_or(&self.velocity[number])
     }

@@ -241,6 +241,8 @@ pub enum Start {
 pub struct Measure {
     /// Averages begin here.
     pub from: f64,
+    /// End of the run, where it is known: averages that begin later are never made, which a warning says.
+    pub until: Option<f64>,
     /// Time between samples of the gas; for `None` nothing but the event counts is measured.
     pub every: Option<f64>,
     /// Bars of the histograms of speed and velocity.
@@ -262,6 +264,7 @@ impl Default for Measure {
     fn default() -> Self {
         Measure {
             from: 0.0,
+            until: None,
             every: None,
             speed_bins: 40,
             profile_axis: 0,

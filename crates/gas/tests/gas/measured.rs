@@ -119,6 +119,28 @@ fn diffusion_is_told_for_each_species() {
     assert!((0.14..0.23).contains(&diffusion.mean) && diffusion.error < 0.02, "{diffusion:?}");
 }
 
+/// A fluid in a periodic box that moves as a whole five times as fast as its balls do: what is measured is that of the fluid at rest.
+#[test]
+fn a_fluid_that_moves_as_a_whole_has_the_measures_of_one_at_rest() {
+    let mut setup = Setup::<3>::fluid(500, 0.3).measured(1.0, 0.2);
+    setup.species[0].velocity = [8.0, -3.0, 1.0];
+    let mut gas = setup.build().unwrap();
+    advance(&mut gas, 21.0);
+    assert!((gas.temperature() - 1.0).abs() < 1e-9, "{}", gas.temperature());
+    let (z, diffusion) = (gas.compressibility(), gas.diffusion(0));
+    assert!((z.mean - 3.98426).abs() < 3.0 * z.error + 0.03, "{z:?}");
+    assert!((0.14..0.23).contains(&diffusion.mean) && diffusion.error < 0.02, "{diffusion:?}");
+    assert!(gas.maxwell_p_value() > 1e-4, "{}", gas.maxwell_p_value());
+    // How far a ball flies depends on who looks.
+    assert!(gas.mean_free_path().mean.is_nan());
+    let chart = gas.charts().into_iter().find(|chart| chart.name.starts_with("velocity_histogram")).unwrap();
+    let mean = |points: &[[f64; 2]]| {
+        let weight: f64 = points.iter().map(|point| point[1]).sum();
+        points.iter().map(|point| point[0] * point[1]).sum::<f64>() / weight
+    };
+    assert!(mean(&chart.series[0].points).abs() < 0.1, "{}", mean(&chart.series[0].points));
+}
+
 /// Viscosity and thermal conductivity at packing 0.3 after Enskog, as in the validation case.
 const VISCOSITY: f64 = 0.7324;
 const CONDUCTIVITY: f64 = 3.0869;

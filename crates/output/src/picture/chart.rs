@@ -41,6 +41,8 @@ pub(crate) struct Chart {
     pub size: [f64; 2],
     /// First and last time, s.
     pub span: [f64; 2],
+    /// Unit of the time axis.
+    pub time_unit: TimeUnit,
     /// True to name the time axis.
     pub time_named: bool,
     /// The lines.
@@ -137,7 +139,7 @@ impl Chart {
         let left = LEFT.max(longest[0].max(longest[1]) + 12.0);
         let [from, to] = self.span;
         Axes {
-            unit: TimeUnit::of(to),
+            unit: self.time_unit,
             span: [from, if to > from { to } else { from + 1.0 }],
             range,
             step,
@@ -165,9 +167,14 @@ fn draw_axes(svg: &mut Svg, axes: &Axes, time_named: bool) {
     }
     svg.line([left, bottom], [right, bottom], "axis");
     if time_named {
-        svg.text([right, bottom + 31.0], Anchor::End, "small", &format!("time, {}", axes.unit.name));
+        svg.text([right, bottom + 31.0], Anchor::End, "small", &time_label(axes.unit));
     }
     svg.line([left, top], [left, bottom], "grid");
+}
+
+/// The name of the time axis.
+fn time_label(unit: TimeUnit) -> String {
+    if unit.name.is_empty() { "time".into() } else { format!("time, {}", unit.name) }
 }
 
 /// A value on an axis, with thousands grouped.
@@ -248,6 +255,7 @@ mod tests {
             unit: "m".into(),
             size: [300.0, 160.0],
             span: [0.0, 3600.0],
+            time_unit: TimeUnit::of(3600.0),
             time_named: true,
             series: vec![series],
             now: None,

@@ -3,6 +3,7 @@
 use super::Report;
 use crate::GaugeTable;
 use crate::picture::{Chart, Series, number, time};
+use corpuscle_drawing::ticks::TimeUnit;
 use corpuscle_scene::Inflow;
 
 /// Units as they end a header, and as printed; the longer before those that end like them.
@@ -101,6 +102,7 @@ pub(super) fn hydrographs(all: &[GaugeSeries], span: [f64; 2], width: f64) -> Ve
         unit: unit.to_owned(),
         size: [width, height],
         span,
+        time_unit: TimeUnit::of(span[1]),
         time_named: title.is_empty(),
         title,
         series: series.map(|s| s.line("", colour, true)).into_iter().collect(),
@@ -142,6 +144,7 @@ pub(super) fn together(all: &[GaugeSeries], unit: &str, title: &str, span: [f64;
         unit: unit.to_owned(),
         size,
         span,
+        time_unit: TimeUnit::of(span[1]),
         time_named: true,
         series: lines.collect(),
         now: None,

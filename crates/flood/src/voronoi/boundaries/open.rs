@@ -7,7 +7,7 @@ use super::super::solver::Solver;
 use super::{Boundary, Now, state};
 use crate::setup::{load, setup};
 use corpuscle_model::{ExactSum, ModelError};
-use corpuscle_scene::{Edge, Flood as Settings, Side};
+use corpuscle_scene::{Edge, Flood as Settings, Side, Table};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 
@@ -73,7 +73,7 @@ impl Boundaries {
             .into_iter()
             .chain(of_parts)
             .chain(of_lines)
-            .map(|edge| boundary(edge, folder))
+            .map(|edge| boundary(edge, terrain, folder))
             .collect::<Result<_, _>>()?;
         let part = |(number, part): (usize, &corpuscle_scene::EdgePart)| {
             let side = match part.side {
@@ -385,7 +385,22 @@ fn wave(level: Option<f64>, velocity: Option<f64>, rest: f64, [bed, ground]: [f6
     Now::Beyond(level, -velocity, ground)
 }
 
-fn boundary(edge: &Edge, folder: &Path) -> Result<Boundary, ModelError> {
+/// Refuses a paddle that moves farther than the terrain is long: it would leave it, and its discharge is that of a wall at the side.
+fn check_travel(motion: &Table, terrain: &Terrain) -> Result<(), ModelError> {
+    let positions = || motion.rows().iter().map(|row| row[1]);
+    let travel = positions().fold(f64::NEG_INFINITY, f64::max) - positions().fold(f64::INFINITY, f64::min);
+    let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
+    let length = (x_max - x_min).max(y_max - y_min);
+    if travel < length {
+        return Ok(());
+    }
+    Err(setup(format!(
+        "a paddle of [flood.edges] moves {travel} m to and fro, and the terrain is {length} m long: its positions are in metres, small \
+         compared with the waves"
+    )))
+}
+
+fn boundary(edge: &Edge, terrain: &Terrain, folder: &Path) -> Result<Boundary, ModelError> {
     let table = |rows: &Vec<[f64; 2]>| load(&corpuscle_scene::Series::Table(rows.clone()), folder);
     Ok(match edge {
         Edge::Open => Boundary::Open,
@@ -417,6 +432,7 @@ fn boundary(edge: &Edge, folder: &Path) -> Result<Boundary, ModelError> {
                     pair[0][1], pair[1][1], pair[0][0]
                 )));
             }
+            check_travel(&motion, terrain)?;
             Boundary::Paddle(motion)
         }
         Edge::NormalDepth(slope) => Boundary::NormalDepth(slope.sqrt()),

@@ -33,6 +33,25 @@ pub(crate) struct Link {
     pub law: Law,
 }
 
+/// What is odd about the links of a scene, in sentences: a culvert much shorter than the way it bridges would lose too little head.
+pub(crate) fn warn_of_links(scene: &Settings, terrain: &Terrain) -> Vec<String> {
+    let odd = |link: &LinkScene| {
+        let LinkLaw::Culvert(culvert) = &link.law else { return None };
+        let [from, to] = [link.from, link.to].map(|point| terrain.to_model(point));
+        let distance = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let length = culvert.length_m.filter(|length| *length < LEAST_LENGTH * distance)?;
+        Some(format!(
+            "The culvert '{}' is {length} m long, and its ends lie {distance:.1} m apart: it loses less head than one that reaches from \
+             end to end.",
+            link.name
+        ))
+    };
+    scene.link.iter().filter_map(odd).collect()
+}
+
+/// Length of a culvert over the distance of its ends below which it is warned of: ends may lie a little before its inlet and outlet.
+const LEAST_LENGTH: f64 = 0.5;
+
 /// All of them.
 #[derive(Default)]
 pub(crate) struct Structures {

@@ -5,7 +5,7 @@ mod kinds;
 #[cfg(feature = "gpu")]
 pub(super) mod upload;
 
-pub(super) use kinds::{Flows, Structures};
+pub(super) use kinds::{Flows, Structures, warn_of_links};
 
 use super::domain::Domain;
 use super::mesh::Mesh;
