@@ -2,14 +2,11 @@
 
 use crate::colour::{Colour, hex};
 use crate::svg::{Anchor, Svg};
-use crate::text::number;
+use crate::text::{number, prefix};
 use crate::ticks;
 
 /// Parts of the bar of colours.
 const SHADES: usize = 48;
-
-/// Prefixes of units, from large to small.
-const PREFIXES: [(f64, &str); 6] = [(1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
 
 /// Draws a bar of the colours of values from `low` to `high`, `width` wide from a position on; `colour` takes the fraction from low to high.
 /// Returns its lower end.
@@ -67,11 +64,6 @@ pub fn length_label(length: f64, unit: &str) -> String {
     }
     let (factor, prefix) = prefix(length);
     format!("{} {prefix}{unit}", ticks::label(length / factor, length / factor))
-}
-
-/// The prefix of a unit that suits a length, and what it stands for.
-pub fn prefix(length: f64) -> (f64, &'static str) {
-    PREFIXES.into_iter().find(|(factor, _)| length >= factor * 0.999).unwrap_or(PREFIXES[5])
 }
 
 #[cfg(test)]

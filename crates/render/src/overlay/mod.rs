@@ -8,9 +8,10 @@ mod north;
 pub use axes::AxisOnPage;
 
 use crate::{Camera, ColourTable, Lens, RenderError, Stage};
-use corpuscle_drawing::bars::{prefix, scale_bar, scale_bar_width};
+use corpuscle_drawing::bars::{scale_bar, scale_bar_width};
 use corpuscle_drawing::png::svg_to_pixels;
 use corpuscle_drawing::svg::{Anchor, Figure, Svg};
+use corpuscle_drawing::text::prefix;
 use corpuscle_gpu::Image;
 
 /// Height of a picture in CSS pixels: letters keep their part of it.
