@@ -1,9 +1,8 @@
 //! Results of an ensemble: statistics over its finished members as files, and the report.
 
-use crate::folder::Chosen;
-use crate::member::{Record, axes, read_gauges, read_map};
+use crate::member::{axes, read_gauges, read_map};
 use crate::statistics::{Absent, MEMORY, Moments, Values, moments, percentiles, share_above};
-use crate::{EnsembleError, Folder, Source};
+use crate::{Chosen, EnsembleError, Folder, Record, Source};
 use corpuscle::Simulation;
 use corpuscle::model::{Chart, ChartAxis, ChartSeries, ChartStyle};
 use corpuscle::output::{EnsembleMap, EnsembleReport, EnsembleTable, GaugeTable};

@@ -1,19 +1,17 @@
 //! One member of an ensemble: its run, and its files.
 
 mod maps;
-mod record;
 
 pub(crate) use maps::{axes, read_map};
-pub use record::{Failure, Record};
 
-use crate::{EnsembleError, Folder, Source};
+use crate::record::{Axis, Described};
+use crate::{EnsembleError, Failure, Folder, Record, Source};
 use corpuscle::model::Map;
 use corpuscle::output::{GaugeTable, Status, Summary};
 use corpuscle::terrain::MapGrid;
 use corpuscle::{Error, Progress, Simulation, Sink};
 use corpuscle_atomic_file::{clear_unfinished, write_whole};
 use rayon::ThreadPoolBuilder;
-use record::{Axis, Described};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;

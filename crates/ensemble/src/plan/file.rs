@@ -2,8 +2,7 @@
 
 use super::Plan;
 use super::sample::{MOST_SOBOL_KEYS, MOST_SOBOL_MEMBERS, combinations, latin_hypercube, sobol};
-use crate::folder::Chosen;
-use crate::{EnsembleError, Source};
+use crate::{Chosen, EnsembleError, Source};
 use corpuscle::scene::{TOO_DEEP, builtin, read_text, too_deep};
 use serde::Deserialize;
 use serde_json::{Number, Value};
