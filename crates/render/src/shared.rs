@@ -2,6 +2,9 @@
 
 use corpuscle_gpu::{Layout, SharedPiece, wgpu};
 
+/// Acceleration of free fall, m/s2, in double precision: `GRAVITY` of shaders.
+pub(crate) const FREE_FALL: f64 = 9.81;
+
 corpuscle_gpu::declare! {
     constants {
         /// Circumference of a circle over its width.
@@ -19,7 +22,7 @@ corpuscle_gpu::declare! {
         /// Numbers a pixel in which splats add up water, foam and flow.
         pub(crate) const SUMS: u32 = 7;
         /// m/s2.
-        pub(crate) const GRAVITY: f32 = crate::fluid::GRAVITY as f32;
+        pub(crate) const GRAVITY: f32 = FREE_FALL as f32;
         /// sRGB (IEC 61966-2-1): a straight line for dark colours, `linear * SRGB_SLOPE`, and `SRGB_SCALE * linear^(1 / SRGB_EXPONENT) - SRGB_OFFSET` above.
         pub(crate) const SRGB_SLOPE: f32 = 12.92;
         /// See above.
@@ -33,7 +36,7 @@ corpuscle_gpu::declare! {
         /// The same in linear light.
         pub(crate) const SRGB_LINE_END_LINEAR: f32 = 0.003_130_8;
         /// Quads along a side of a tile of the ground.
-        pub(crate) const QUADS: u32 = crate::terrain::QUADS_OF_TILE;
+        pub(crate) const QUADS: u32 = 64;
     }
     structs {
         /// Camera, light and size of a picture. All in stage coordinates: the half diagonal of what is shown is 1. Depth is 1 near and 0 far; nothing drawn is 0.

@@ -7,7 +7,6 @@ mod walls;
 
 pub use field::HeightField;
 pub use natural::natural_colours;
-pub(crate) use tiles::QUADS as QUADS_OF_TILE;
 
 use crate::buffer::{indices, instances, uniform};
 use crate::pipeline::PipelineDescriptor;

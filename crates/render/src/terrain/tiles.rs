@@ -4,11 +4,10 @@
 //! samples. So the number of quads follows the picture, not the terrain.
 
 use super::HeightField;
+use crate::shared::QUADS;
 use crate::{Camera, Lens, Stage};
 use glam::DVec3;
 
-/// Quads along a side of a tile; as in `terrain.wgsl`.
-pub(crate) const QUADS: u32 = 64;
 /// Indices of the triangles of a tile with its skirt.
 pub(super) const INDICES: u32 = 6 * QUADS * QUADS + 4 * 6 * QUADS;
 /// A quad may be seen so large, samples; and one of a tile at the border, where the upright sides end at the finest nodes.
