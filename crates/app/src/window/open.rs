@@ -1,6 +1,6 @@
 //! The scene that is open.
 
-use super::Source;
+use crate::Source;
 use crate::gas_controls::GasControls;
 use crate::icons::{self, Icon};
 use crate::instruments::Instruments;
