@@ -150,7 +150,7 @@ impl Subject {
     /// Changes what is computed; a finished run stays as it is.
     pub fn change(&mut self, change: Change) -> Result<(), Error> {
         match self {
-            Self::Live(simulation, _) => change.make(simulation),
+            Self::Live(simulation, _) => simulation.make_change(change),
             Self::Recorded(_) => Ok(()),
         }
     }

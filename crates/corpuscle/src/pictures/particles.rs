@@ -32,9 +32,7 @@ pub struct Particles {
 impl Particles {
     /// The pictures of a scene.
     pub fn new(scenery: &Scenery) -> Self {
-        let scene = scenery.scene();
-        let has_si_units = crate::models::of(scene).is_ok_and(|kind| kind.has_si_units(scene));
-        Self { has_si_units, stage: None, floor: None }
+        Self { has_si_units: scenery.has_si_units, stage: None, floor: None }
     }
 
     fn overlay(&self, title: &str, frame: &Frame, stage: &Stage) -> Overlay {

@@ -1,8 +1,7 @@
 //! Dew as discs: solids by their patches, drops, and the air of a section.
 
 use super::section::{RADIUS, Section, temperatures};
-use super::{FIELD_OF_VIEW, MARGIN, MATT, RAISED, Room, azimuth};
-use crate::models::dew::shows_air;
+use super::{FIELD_OF_VIEW, MARGIN, MATT, RAISED, Room, azimuth, shows_air};
 use crate::pictures::{Disc, Moment, OwnView, Patch, Sketch, SketchView, Sketcher};
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
 use corpuscle_drawing::text;
