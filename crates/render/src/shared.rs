@@ -243,6 +243,16 @@ corpuscle_gpu::declare! {
             pub(crate) unused: [f32; 2],
         }
 
+        /// A tile of the ground.
+        pub(crate) struct TileInstance {
+            /// Its first node, eastwards and northwards.
+            pub(crate) first: [u32; 2],
+            /// How many nodes of the ground its own are apart.
+            pub(crate) stride: u32,
+            /// Fills up.
+            pub(crate) unused: u32,
+        }
+
         /// A piece of a tube, in stage coordinates.
         pub(crate) struct TubeInstance {
             /// One end, and the radius.

@@ -5,12 +5,14 @@
 //! shader that does what is wanted alone. On a GPU nothing of this is used.
 
 mod pipelines;
+mod shared;
 
 use corpuscle::gpu::{Gpu, GpuKind, wgpu};
-use egui::epaint::{ClippedShape, ImageData, ImageDelta, Primitive, Vertex};
+use egui::epaint::{ClippedShape, ImageData, ImageDelta, Primitive};
 use egui::{Context, FullOutput, PaintCallbackInfo, Rect, Shape, TextureId};
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait};
 use pipelines::{Image, Pipelines};
+use shared::MeshVertex;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -56,7 +58,7 @@ struct Part {
 /// Buffers of a picture's triangles: vertices, indices, and the parts.
 #[derive(Default)]
 struct Gathered {
-    vertices: Vec<Vertex>,
+    vertices: Vec<MeshVertex>,
     indices: Vec<u32>,
     /// Parts in a row, and what others draw after them.
     runs: Vec<(Vec<Part>, Option<ClippedShape>)>,
@@ -144,7 +146,7 @@ impl Meshes {
                 first_vertex: gathered.vertices.len() as i32,
             });
             gathered.indices.extend(&mesh.indices);
-            gathered.vertices.extend(&mesh.vertices);
+            gathered.vertices.extend(mesh.vertices.iter().map(MeshVertex::from));
         }
     }
 }

@@ -11,9 +11,9 @@ pub use natural::natural_colours;
 use crate::buffer::{indices, instances, uniform};
 use crate::pipeline::PipelineDescriptor;
 use crate::shaders::Shader;
-use crate::shared::Ground;
+use crate::shared::{Ground, TileInstance, buffer_layout};
 use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders, static_layer};
-use corpuscle_gpu::{Gpu, GroupLayout, Image, texture_2d, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, Image, SharedStruct, texture_2d, wgpu};
 use half::f16;
 use rayon::prelude::*;
 use walls::Walls;
@@ -59,16 +59,13 @@ impl Terrain {
         let gpu = renderer.gpu();
         let shader = ("terrain", include_str!("terrain.wgsl"));
         let layout = shaders::layout(gpu, "terrain", 1, &[shader]);
-        let attributes = wgpu::vertex_attr_array![0 => Uint32x4];
+        let tile = TileInstance::layout();
+        let attributes = tile.vertex_attributes();
         let descriptor = PipelineDescriptor {
             label: "terrain",
             shader: &Shader::new(shader.0, shader.1),
             groups: &[renderer.view_layout(), &layout],
-            buffers: &[wgpu::VertexBufferLayout {
-                array_stride: 16,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &attributes,
-            }],
+            buffers: &[buffer_layout(&tile, wgpu::VertexStepMode::Instance, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
         let [x, y, _] = stage.place([field.origin[0], field.origin[1], 0.0]).into();

@@ -15,7 +15,7 @@ struct Corner {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) index: u32, @location(0) tile: vec4u) -> Corner {
+fn vertex(@builtin(vertex_index) index: u32, tile: TileInstance) -> Corner {
     let side = QUADS + 1u;
     var at = vec2u(index % side, index / side);
     var sunk = 0.0;
@@ -24,11 +24,11 @@ fn vertex(@builtin(vertex_index) index: u32, @location(0) tile: vec4u) -> Corner
         let along = (index - side * side) % side;
         let edge = (index - side * side) / side;
         at = select(vec2u(along, select(0u, QUADS, edge == 1u)), vec2u(select(0u, QUADS, edge == 3u), along), edge >= 2u);
-        sunk = select(1.0, 0.0, tile.z == 1u);
+        sunk = select(1.0, 0.0, tile.stride == 1u);
     }
-    let node = min(tile.xy + at * tile.z, ground.nodes.xy - 1u);
+    let node = min(tile.first + at * tile.stride, ground.nodes.xy - 1u);
     let height = textureLoad(heights, node, 0).r;
-    let skirt = sunk * f32(tile.z) * 1.5 * max(ground.cell.x, ground.cell.y);
+    let skirt = sunk * f32(tile.stride) * 1.5 * max(ground.cell.x, ground.cell.y);
     let place = vec3f(ground.origin.xy + vec2f(node) * ground.cell.xy, height - skirt);
     // Middles of texels are the nodes.
     let uv = (vec2f(node) + 0.5) / vec2f(ground.nodes.xy);

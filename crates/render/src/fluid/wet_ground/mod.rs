@@ -12,11 +12,11 @@ const MOST_CELLS: f64 = 2.0 * 1024.0 * 1024.0;
 #[derive(Debug)]
 pub(super) struct WetGround {
     parameters: Parameters,
-    pub uniforms: wgpu::Buffer,
+    uniforms: wgpu::Buffer,
     /// Time at which each cell was last under water, as the bits of a number of single precision above 0; 0: never.
-    pub latest: wgpu::Buffer,
+    latest: wgpu::Buffer,
     /// How high the water stood there at most: see wet_ground.wgsl.
-    pub levels: wgpu::Buffer,
+    levels: wgpu::Buffer,
     /// Time of the first picture and of the last, s; none before.
     times: Option<[f64; 2]>,
 }
@@ -44,6 +44,15 @@ impl WetGround {
             levels: storage::<u32>(gpu, "levels of water", number)?,
             times: None,
         })
+    }
+
+    /// What shaders with `#import wet_ground` and the record of it have bound.
+    pub fn bindings(&self) -> [(&'static str, wgpu::BindingResource<'_>); 3] {
+        [
+            ("wet", self.uniforms.as_entire_binding()),
+            ("wet_latest", self.latest.as_entire_binding()),
+            ("wet_levels", self.levels.as_entire_binding()),
+        ]
     }
 
     /// Sets the time of the picture, s. One before that of the last picture begins anew.
