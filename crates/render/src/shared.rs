@@ -55,7 +55,7 @@ corpuscle_gpu::declare! {
             pub(crate) view_from_clip: [[f32; 4]; 4],
             /// From the stage to the clip space of the sun's depth map.
             pub(crate) sun_from_world: [[f32; 4]; 4],
-            /// Place of the eye; 1 with perspective, 0 without.
+            /// Position of the eye; 1 with perspective, 0 without.
             pub(crate) eye: [f32; 4],
             /// Line of sight; height of a pixel, at distance 1 where there is perspective.
             pub(crate) forward: [f32; 4],
@@ -114,7 +114,7 @@ corpuscle_gpu::declare! {
         /// A drop as a cap on a surface, in stage coordinates.
         pub(crate) struct CapInstance {
             /// Middle of the disc that it covers.
-            pub(crate) place: [f32; 3],
+            pub(crate) position: [f32; 3],
             /// Radius of the disc.
             pub(crate) radius: f32,
             /// The way out of the surface, of length 1.
@@ -219,8 +219,8 @@ corpuscle_gpu::declare! {
     structs {
         /// A corner of a surface, in stage units.
         pub(crate) struct Vertex {
-            /// Place; of sides cut upright the depth below the surface.
-            pub(crate) place: [f32; 4],
+            /// Position; of sides cut upright the depth below the surface.
+            pub(crate) position: [f32; 4],
             /// Direction out of the surface.
             pub(crate) normal: [f32; 4],
         }
@@ -228,7 +228,7 @@ corpuscle_gpu::declare! {
         /// A particle of a fluid as a ball, or flattened along a direction; in stage coordinates.
         pub(crate) struct DropletInstance {
             /// Middle.
-            pub(crate) place: [f32; 3],
+            pub(crate) position: [f32; 3],
             /// Radius across `normal`.
             pub(crate) radius: f32,
             /// The direction along which it is flattened, of length 1.

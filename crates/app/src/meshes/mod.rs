@@ -100,10 +100,10 @@ impl Meshes {
         }
         let Some(image) = self.images.get(&id) else { return };
         let [x, y] = change.pos.unwrap_or_default().map(|along| along as u32);
-        let place =
+        let part =
             wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x, y, z: 0 }, ..image.texture.as_image_copy() };
         let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
-        self.gpu.queue.write_texture(place, bytemuck::cast_slice(&pixels.pixels), rows, size);
+        self.gpu.queue.write_texture(part, bytemuck::cast_slice(&pixels.pixels), rows, size);
     }
 
     /// The triangles of shapes, and between them what others draw.

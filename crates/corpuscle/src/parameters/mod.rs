@@ -6,7 +6,7 @@ use crate::LiveChange;
 use corpuscle_scene::{Scene, Series};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
-use values::place_at;
+use values::slot_at;
 pub use values::{as_number, largest, multiplied, set, size, size_as_written, value_at};
 
 /// A change of a running scene.
@@ -192,8 +192,8 @@ impl Builder {
 
     /// Declares the default of a key that the scene may leave out.
     pub fn or(&mut self, path: &str, value: f64) -> &mut Self {
-        if let Some(place) = place_at(&mut self.document, path) {
-            *place = Value::Float(value);
+        if let Some(slot) = slot_at(&mut self.document, path) {
+            *slot = Value::Float(value);
             self.left_out.push(path.into());
         }
         self

@@ -10,7 +10,7 @@ use glam::DVec3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
     /// Its middle, m.
-    pub place: [f64; 3],
+    pub position: [f64; 3],
     /// Its radius, m.
     pub radius: f64,
     /// Its colour.

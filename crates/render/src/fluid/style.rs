@@ -95,7 +95,7 @@ impl FluidStyle {
         let [own_red, own_green, own_blue] = self.colour;
         let [width, range, rounding] = [self.width, self.range, self.rounding].map(|length| stage.length(length));
         let [[west, south], [east, north]] = match self.within {
-            Some(corners) => corners.map(|[x, y]| stage.place([x, y, 0.0]).truncate().to_array()),
+            Some(corners) => corners.map(|[x, y]| stage.position([x, y, 0.0]).truncate().to_array()),
             None => [[f32::MIN; 2], [f32::MAX; 2]],
         };
         // Single precision would be coarse after hours: patterns come anew after so many turns.

@@ -68,7 +68,7 @@ impl Terrain {
             buffers: &[buffer_layout(&tile, wgpu::VertexStepMode::Instance, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
-        let [x, y, _] = stage.place([field.origin[0], field.origin[1], 0.0]).into();
+        let [x, y, _] = stage.position([field.origin[0], field.origin[1], 0.0]).into();
         let cell = field.cell.map(|length| stage.length(length));
         let settings = Ground {
             origin: [x, y, 0.0, 0.0],
@@ -189,8 +189,8 @@ fn upload(
 /// Heights in stage coordinates; where there are none those nearby.
 fn upload_heights(gpu: &Gpu, stage: &Stage, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
     let [x, y, _] = stage.centre().into();
-    let place = |height: f32| stage.place([x, y, f64::from(height)]).z;
-    let heights: Vec<f32> = field.filled().into_iter().map(place).collect();
+    let on_stage = |height: f32| stage.position([x, y, f64::from(height)]).z;
+    let heights: Vec<f32> = field.filled().into_iter().map(on_stage).collect();
     upload(gpu, "heights", field.size(), wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&heights))
 }
 

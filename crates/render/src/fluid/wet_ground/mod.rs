@@ -1,4 +1,4 @@
-//! Ground that was under water stays darker until it has dried: when each place was last under water, and how high the water stood, from picture
+//! Ground that was under water stays darker until it has dried: when each position was last under water, and how high the water stood, from picture
 //! to picture.
 
 use crate::shared::WetGround as Parameters;
@@ -30,7 +30,7 @@ impl WetGround {
         let cells = (size / width).ceil().max(glam::DVec2::ONE).as_uvec2();
         let number = cells.x as usize * cells.y as usize;
         let parameters = Parameters {
-            corner: stage.place(stage.from.into()).truncate().into(),
+            corner: stage.position(stage.from.into()).truncate().into(),
             per_unit: 1.0 / stage.length(width),
             soaked: stage.length(soaked),
             cells: cells.into(),
