@@ -20,8 +20,8 @@ pub fn value_bar(
     let part = width / SHADES as f64;
     for shade in 0..SHADES {
         let colour = hex(colour((shade as f64 + 0.5) / SHADES as f64));
-        let place = [from + shade as f64 * part, top];
-        svg.styled_path(rectangle(place, [part + 0.5, 13.0]), true, "", &format!("fill:{colour}"));
+        let position = [from + shade as f64 * part, top];
+        svg.styled_path(rectangle(position, [part + 0.5, 13.0]), true, "", &format!("fill:{colour}"));
     }
     let step = ticks::step(high - low, 5);
     for value in ticks::multiples(low, high, step) {

@@ -34,8 +34,8 @@ fn trimmed(value: f64, decimals: usize) -> String {
 fn grouped(value: f64) -> String {
     let digits = format!("{:.0}", value.abs());
     let mut text = String::from(if value < 0.0 { "-" } else { "" });
-    for (place, digit) in digits.char_indices() {
-        if place > 0 && (digits.len() - place) % 3 == 0 && digits.len() > 4 {
+    for (index, digit) in digits.char_indices() {
+        if index > 0 && (digits.len() - index) % 3 == 0 && digits.len() > 4 {
             text.push(THIN);
         }
         text.push(digit);
