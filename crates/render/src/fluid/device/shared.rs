@@ -110,7 +110,7 @@ corpuscle_gpu::declare! {
         /// Particles in each cell.
         storage counts: [AtomicU32],
         /// The cell of each particle, and its number there.
-        storage slots: [[u32; 2]],
+        storage cell_slots: [[u32; 2]],
         /// Numbers of particles, by which those of a cell are put in order.
         storage keys: [u32],
         /// The first particle of each cell.
