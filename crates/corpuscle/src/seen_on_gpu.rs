@@ -30,7 +30,7 @@ impl Simulation {
         models::of(self.scene()).is_ok_and(|kind| kind.shows_particles(self.scene()))
     }
 
-    /// Goes on as [`Model::advance_with`] does. Of a model that can be drawn where it steps ([`Simulation::is_seen_on`]) `show` is given a
+    /// Goes on as [`corpuscle_model::Model::advance_with`] does. Of a model that can be drawn where it steps ([`Simulation::is_seen_on`]) `show` is given a
     /// glance from the time `first`, s, on, and returns when the next is due, s (a time that has passed stands for the end of the next
     /// step); particles come back only at the end.
     ///
