@@ -77,15 +77,18 @@ fn head(terrain: &Terrain) -> [f64; 2] {
     };
     const STEPS: u32 = 400;
     let heights = |side: usize| -> Vec<(f64, [f64; 2])> {
-        let places = (0..=STEPS).map(|step| at(side, f64::from(step) / f64::from(STEPS)));
-        places.filter(|place| has_data(*place)).map(|place| (terrain.height_once(place[0], place[1]), place)).collect()
+        let positions = (0..=STEPS).map(|step| at(side, f64::from(step) / f64::from(STEPS)));
+        positions
+            .filter(|position| has_data(*position))
+            .map(|position| (terrain.height_once(position[0], position[1]), position))
+            .collect()
     };
     let sides: Vec<_> = (0..4).map(heights).filter(|heights| !heights.is_empty()).collect();
     let mean = |heights: &[(f64, [f64; 2])]| heights.iter().map(|(z, _)| z).sum::<f64>() / heights.len() as f64;
     let highest = sides.iter().max_by(|a, b| mean(a).total_cmp(&mean(b)));
     let lowest = highest.and_then(|side| side.iter().min_by(|a, b| a.0.total_cmp(&b.0)));
     // Terrain without data along all its sides is flooded from its centre.
-    lowest.map_or([bounds.x_min + 0.5 * width, bounds.y_min + 0.5 * height], |(_, place)| *place)
+    lowest.map_or([bounds.x_min + 0.5 * width, bounds.y_min + 0.5 * height], |(_, position)| *position)
 }
 
 /// A number rounded to two significant digits.

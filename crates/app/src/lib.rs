@@ -24,6 +24,7 @@ mod picture;
 mod plots;
 mod screen;
 mod snapshot;
+mod source;
 mod spot;
 mod style;
 mod transport;
@@ -38,7 +39,8 @@ pub use meshes::Meshes;
 pub use meter::Measurement;
 pub use screen::Screen;
 pub use snapshot::{Measures, Snapshot, Wake};
+pub use source::{Source, Start};
 #[cfg(not(target_arch = "wasm32"))]
 pub use view::{ViewError, view};
 pub use view_state::ViewState;
-pub use window::{Embedded, Source, Start, Window};
+pub use window::{Embedded, Window};

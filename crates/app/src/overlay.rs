@@ -47,8 +47,8 @@ impl Over<'_> {
         for mark in &self.shown.overlay.marks {
             self.mark(mark);
         }
-        for (place, label) in &self.shown.overlay.labels {
-            if let Some(at) = self.place(*place) {
+        for (position, label) in &self.shown.overlay.labels {
+            if let Some(at) = self.position(*position) {
                 self.text(at, Align2::CENTER_CENTER, label, 12.5);
             }
         }
@@ -60,8 +60,8 @@ impl Over<'_> {
     }
 
     /// The position in the window of a point of the world, m.
-    pub fn place(&self, point: [f64; 3]) -> Option<Pos2> {
-        place(self.shown, self.rect, point)
+    pub fn position(&self, point: [f64; 3]) -> Option<Pos2> {
+        position(self.shown, self.rect, point)
     }
 
     fn is_dark(&self) -> bool {
@@ -126,7 +126,7 @@ impl Over<'_> {
     }
 
     fn border(&self, border: &Border) {
-        let at = |[x, y]: [f64; 2]| self.place([x, y, 0.0]);
+        let at = |[x, y]: [f64; 2]| self.position([x, y, 0.0]);
         // y is up in the world and down in the window.
         let out = |[x, y]: [f64; 2]| vec2(x as f32, -y as f32);
         match border {
@@ -156,11 +156,11 @@ impl Over<'_> {
 
     fn mark(&self, mark: &Mark) {
         match mark {
-            Mark::Start(place) => {
-                let Some(at) = self.place(*place) else { return };
+            Mark::Start(position) => {
+                let Some(at) = self.position(*position) else { return };
                 self.painter.circle(at, 4.0, Color32::WHITE, Stroke::new(2.0, TRAJECTORY));
             }
-            Mark::Ring(place, radius) => ring(self, *place, *radius, TRAJECTORY),
+            Mark::Ring(position, radius) => ring(self, *position, *radius, TRAJECTORY),
         }
     }
 
@@ -237,16 +237,16 @@ impl Over<'_> {
 }
 
 /// Draws a ring round a ball of a radius, m.
-pub fn ring(over: &Over<'_>, place: [f64; 3], radius: f64, colour: Color32) {
-    let Some(at) = over.place(place) else { return };
+pub fn ring(over: &Over<'_>, position: [f64; 3], radius: f64, colour: Color32) {
+    let Some(at) = over.position(position) else { return };
     let right = over.shown.camera.up.cross(over.shown.camera.eye - over.shown.camera.target).normalize_or_zero();
-    let beside = over.place((glam::DVec3::from(place) + radius * right).into());
+    let beside = over.position((glam::DVec3::from(position) + radius * right).into());
     let radius = beside.map_or(6.0, |beside| (beside - at).length());
     over.painter.circle_stroke(at, (radius + 3.0).max(7.0), Stroke::new(2.2, colour));
 }
 
 /// The position of a point of the world, m, in a rectangle that a picture fills.
-pub fn place(shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Pos2> {
+pub fn position(shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Pos2> {
     let aspect = f64::from(rect.width()) / f64::from(rect.height());
     let [x, y] = shown.camera.project(&shown.stage, aspect, point)?;
     Some(pos2(rect.left() + x as f32 * rect.width(), rect.top() + y as f32 * rect.height()))

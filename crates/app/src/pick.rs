@@ -31,13 +31,13 @@ impl Picked {
         let eye: [f64; 3] = shown.camera.eye.into();
         let mut best: Option<(f32, f64, Self)> = None;
         for set in &frame.sets {
-            for (at, place) in set.position.iter().enumerate() {
-                let Some(seen) = overlay::place(shown, rect, *place) else { continue };
+            for (at, position) in set.position.iter().enumerate() {
+                let Some(seen) = overlay::position(shown, rect, *position) else { continue };
                 let off = (seen - pointer).length();
                 if off > REACH {
                     continue;
                 }
-                let far = (0..3).map(|k| (place[k] - eye[k]).powi(2)).sum::<f64>();
+                let far = (0..3).map(|k| (position[k] - eye[k]).powi(2)).sum::<f64>();
                 // Particles a few points apart are equally near; the one nearest to the camera is picked.
                 let step = (off / 4.0).floor();
                 if best.as_ref().is_none_or(|(other, away, _)| (step, far) < (*other, *away)) {
@@ -55,7 +55,7 @@ impl Picked {
     }
 
     /// Its set and index in a frame.
-    pub fn place(&self, frame: &Frame) -> Option<[f64; 3]> {
+    pub fn position(&self, frame: &Frame) -> Option<[f64; 3]> {
         self.find(frame).map(|(set, at)| set.position[at])
     }
 
@@ -85,7 +85,7 @@ impl Picked {
         for pair in self.trajectory.windows(2) {
             // A crossing of a periodic side is not drawn across the box.
             let far = (0..3).map(|k| (pair[1][k] - pair[0][k]).abs()).fold(0.0, f64::max);
-            if let (Some(from), Some(to)) = (over.place(pair[0]), over.place(pair[1]))
+            if let (Some(from), Some(to)) = (over.position(pair[0]), over.position(pair[1]))
                 && far < 0.5 * box_size
             {
                 over.painter.line_segment([from, to], Stroke::new(1.8, COLOUR));

@@ -19,7 +19,7 @@ const COLOUR: Color32 = Color32::from_rgb(0xf5, 0x9e, 0x0b);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spot {
     /// Position and bed elevation in model coordinates, m.
-    place: [f64; 3],
+    position: [f64; 3],
     /// True once there is a gauge.
     pub gauged: bool,
 }
@@ -39,21 +39,21 @@ impl Spot {
         let bounds = terrain.bounds();
         let [width, height] = bounds.size();
         let mut range = [[bounds.x_min, bounds.x_max], [bounds.y_min, bounds.y_max]];
-        let mut place = nearest(shown, rect, terrain, pointer, range, COARSE_STEPS)?;
+        let mut position = nearest(shown, rect, terrain, pointer, range, COARSE_STEPS)?;
         let mut step = [width, height].map(|side| side / f64::from(COARSE_STEPS));
         for _ in 0..REFINEMENTS {
-            range = [0, 1].map(|axis| [place[axis] - step[axis], place[axis] + step[axis]]);
-            place = nearest(shown, rect, terrain, pointer, range, FINE_STEPS)?;
+            range = [0, 1].map(|axis| [position[axis] - step[axis], position[axis] + step[axis]]);
+            position = nearest(shown, rect, terrain, pointer, range, FINE_STEPS)?;
             step = step.map(|step| 2.0 * step / f64::from(FINE_STEPS));
         }
-        let seen = overlay::place(shown, rect, place)?;
-        let inside = bounds.contains(place[0], place[1]);
-        ((seen - pointer).length() < 3.0 && inside).then_some(Self { place, gauged: false })
+        let seen = overlay::position(shown, rect, position)?;
+        let inside = bounds.contains(position[0], position[1]);
+        ((seen - pointer).length() < 3.0 && inside).then_some(Self { position, gauged: false })
     }
 
     /// The spot below a position.
     pub fn under(terrain: &Terrain, [x, y, _]: [f64; 3]) -> Self {
-        Self { place: [x, y, terrain.height(x, y)], gauged: false }
+        Self { position: [x, y, terrain.height(x, y)], gauged: false }
     }
 
     /// The spot of the terrain that is nearest to a position.
@@ -63,18 +63,18 @@ impl Spot {
     }
 
     /// Position and bed elevation, in model coordinates, m.
-    pub fn place(&self) -> [f64; 3] {
-        self.place
+    pub fn position(&self) -> [f64; 3] {
+        self.position
     }
 
     /// Where it is, in model coordinates, m.
     pub fn at_model(&self) -> [f64; 2] {
-        [self.place[0], self.place[1]]
+        [self.position[0], self.position[1]]
     }
 
     /// Draws a cross over it.
     pub fn paint(&self, over: &Over<'_>) {
-        let Some(at) = over.place(self.place) else { return };
+        let Some(at) = over.position(self.position) else { return };
         for arm in [vec2(8.0, 0.0), vec2(0.0, 8.0)] {
             over.painter.line_segment([at - arm, at + arm], Stroke::new(2.2, COLOUR));
         }
@@ -100,10 +100,10 @@ impl Spot {
                     };
                     let own = terrain.to_own(self.at_model());
                     row("position", own.map(number).join(",  "));
-                    row("bed elevation", format!("{} m", number(self.place[2])));
+                    row("bed elevation", format!("{} m", number(self.position[2])));
                     if let Some(water) = water {
                         row("depth", format!("{} m", number(water.depth)));
-                        row("level", format!("{} m", number(self.place[2] + water.depth)));
+                        row("level", format!("{} m", number(self.position[2] + water.depth)));
                         row("velocity", format!("{} m/s", water.velocity.map(at_rest).map(number).join(",  ")));
                         row("speed", format!("{} m/s", number(at_rest(water.speed()))));
                     }
@@ -143,14 +143,14 @@ fn nearest(
     for row in 0..=steps {
         for column in 0..=steps {
             let [x, y] = [at(0, column), at(1, row)];
-            let place = [x, y, terrain.height(x, y)];
-            let Some(seen) = overlay::place(shown, rect, place) else { continue };
-            let far = (0..3).map(|axis| (place[axis] - eye[axis]).powi(2)).sum::<f64>();
-            all.push(((seen - pointer).length(), far, place));
+            let position = [x, y, terrain.height(x, y)];
+            let Some(seen) = overlay::position(shown, rect, position) else { continue };
+            let far = (0..3).map(|axis| (position[axis] - eye[axis]).powi(2)).sum::<f64>();
+            all.push(((seen - pointer).length(), far, position));
         }
     }
     let closest = all.iter().map(|(off, ..)| *off).fold(f32::INFINITY, f32::min);
     // A position behind a ridge may appear as near; the one in front is picked.
     let beside = all.iter().filter(|(off, ..)| *off <= 1.5 * closest + 0.5);
-    beside.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(.., place)| *place)
+    beside.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(.., position)| *position)
 }

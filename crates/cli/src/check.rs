@@ -97,17 +97,17 @@ fn fault(error: &anyhow::Error) -> Value {
         Some(corpuscle::Error::Scene(error)) => error.problem(),
         _ => None,
     };
-    let place = problem.and_then(|problem| problem.place.as_ref());
-    let in_file = place.filter(|place| place.line.is_some());
-    let in_option = place.filter(|place| place.line.is_none());
+    let location = problem.and_then(|problem| problem.place.as_ref());
+    let in_file = location.filter(|location| location.line.is_some());
+    let in_option = location.filter(|location| location.line.is_none());
     json!({
         "ok": false,
         "error": in_words(error),
         "key": problem.map(|problem| &problem.key).filter(|key| !key.is_empty()),
-        "file": in_file.map(|place| &place.source),
-        "line": in_file.and_then(|place| place.line),
-        "column": in_file.map(|place| place.column),
-        "option": in_option.map(|place| &place.source),
+        "file": in_file.map(|location| &location.source),
+        "line": in_file.and_then(|location| location.line),
+        "column": in_file.map(|location| location.column),
+        "option": in_option.map(|location| &location.source),
     })
 }
 

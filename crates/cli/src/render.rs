@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use corpuscle::Simulation;
 use corpuscle::gpu::Image;
 use corpuscle::model::{Container, GaugeColumn, Path as Trajectory};
-use corpuscle::output::{FrameFiles, GaugeTable, WallPlaces, followed_paths, gauge_chart, put_into_report};
+use corpuscle::output::{FrameFiles, GaugeTable, WallPositions, followed_paths, gauge_chart, put_into_report};
 use corpuscle::output::{write_drawing, write_picture};
 use corpuscle::pictures::{Moment, PictureSettings, Pictures, Sheet};
 use corpuscle::scene::{Run, Scene};
@@ -110,7 +110,7 @@ impl Drawing {
 struct DrawnRun {
     files: FrameFiles,
     paths: Vec<Trajectory>,
-    walls: WallPlaces,
+    walls: WallPositions,
     container: Option<Container>,
     pictures: Pictures,
     inset: Option<(GaugeColumn, GaugeTable)>,
@@ -128,7 +128,7 @@ impl DrawnRun {
         let has_si_units = corpuscle::models::of(&scene).is_ok_and(|kind| kind.has_si_units(&scene));
         let simulation = Simulation::open_to_restore(scene, folder)?;
         let pictures = Pictures::open(&simulation, settings)?;
-        let walls = WallPlaces::read(folder).map_err(corpuscle::Error::from)?;
+        let walls = WallPositions::read(folder).map_err(corpuscle::Error::from)?;
         let inset = match &options.inset {
             Some(name) => Some(gauge(name, simulation.model().gauge_columns(), folder)?),
             None => None,

@@ -26,6 +26,8 @@ mod live_change;
 mod memory;
 pub mod models;
 mod open;
+#[cfg(feature = "pictures")]
+mod open_pictures;
 pub mod parameters;
 #[cfg(feature = "pictures")]
 pub mod pictures;
@@ -33,6 +35,8 @@ mod progress;
 mod recorder;
 mod run_observer;
 mod schedule;
+#[cfg(feature = "pictures")]
+mod seen_on_gpu;
 mod simulation;
 mod sink;
 

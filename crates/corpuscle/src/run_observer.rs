@@ -1,10 +1,10 @@
 //! The observer of a run: it passes rows of gauges and glances on to the sinks, reports the progress, and has the model return when a checkpoint is
 //! due.
 
-#[cfg(feature = "pictures")]
-use crate::pictures::Glance;
 use crate::schedule::Schedule;
 use crate::{Error, Progress, Sink};
+#[cfg(feature = "pictures")]
+use corpuscle_model::Glance;
 use corpuscle_model::{AdvanceObserver, ModelProgress};
 use std::cell::RefCell;
 use web_time::Instant;

@@ -1,6 +1,7 @@
 //! A simulation: an open scene, and its run.
 
 use crate::models::{self, COLLISIONS};
+use crate::parameters::Change;
 use crate::run_observer::{CheckpointTimer, Glances, Meter, RunObserver, SharedRunObserver};
 use crate::schedule::Schedule;
 use crate::{Error, LiveChange, Progress, Sink};
@@ -71,6 +72,17 @@ impl Simulation {
     /// [`corpuscle_model::ModelError::Setup`] where the scene is of another model, or cannot be changed so: nothing has changed then.
     pub fn change_live(&mut self, change: impl Into<LiveChange>) -> Result<(), Error> {
         Ok(change.into().change(self.model_mut())?)
+    }
+
+    /// Makes a change of a parameter.
+    ///
+    /// # Errors
+    /// Those of [`Simulation::change_live`] and [`Simulation::place_gauge`].
+    pub fn make_change(&mut self, change: Change) -> Result<(), Error> {
+        match change {
+            Change::Model(changes) => changes.into_iter().try_for_each(|change| self.change_live(change)),
+            Change::Gauge { name, at } => self.place_gauge(&name, at),
+        }
     }
 
     /// The water at a position of a flood, in model coordinates; none for other models.

@@ -2,9 +2,9 @@
 
 use crate::Error;
 #[cfg(feature = "pictures")]
-use crate::pictures::Glance;
-#[cfg(feature = "pictures")]
 use corpuscle_gpu::Gpu;
+#[cfg(feature = "pictures")]
+use corpuscle_model::Glance;
 use corpuscle_model::Model;
 use corpuscle_output::{Clock, Summary};
 

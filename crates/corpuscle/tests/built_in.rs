@@ -1,4 +1,4 @@
-//! The built-in scenes open, and their places are where their comments say.
+//! The built-in scenes open, and their positions are where their comments say.
 
 use corpuscle::Simulation;
 use corpuscle::scene::{FloodScene, Scene, Terrain, builtin, scenes};

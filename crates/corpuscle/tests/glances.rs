@@ -9,30 +9,30 @@ use corpuscle::{Error, Simulation, Sink};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// Places of particles, m, by their identities.
-type Places = Vec<(u64, [f64; 3])>;
+/// Positions of particles, m, by their identities.
+type Positions = Vec<(u64, [f64; 3])>;
 
 /// Takes pictures of a model, or of glances at one device.
 #[derive(Default)]
 struct Album {
     gpu: Option<Gpu>,
     /// Times, s, and where particles are.
-    pictures: Vec<(f64, Places)>,
+    pictures: Vec<(f64, Positions)>,
     glances: usize,
     /// When it refuses more.
     full_at: Option<usize>,
 }
 
 impl Album {
-    fn keep(&mut self, time: f64, mut places: Places) -> Result<(), Error> {
-        places.sort_unstable_by_key(|(id, _)| *id);
-        self.pictures.push((time, places));
+    fn keep(&mut self, time: f64, mut positions: Positions) -> Result<(), Error> {
+        positions.sort_unstable_by_key(|(id, _)| *id);
+        self.pictures.push((time, positions));
         let is_full = self.full_at == Some(self.pictures.len());
         if is_full { Err(ModelError::Device("the album is full".into()).into()) } else { Ok(()) }
     }
 }
 
-fn places(frame: &Frame, name: &str) -> Places {
+fn positions(frame: &Frame, name: &str) -> Positions {
     let sets = frame.sets.iter().filter(|set| set.name == name);
     sets.flat_map(|set| set.id.iter().copied().zip(set.position.iter().copied())).collect()
 }
@@ -44,7 +44,7 @@ impl Sink for Album {
 
     fn picture(&mut self, model: &dyn Model) -> Result<(), Error> {
         let frame = model.frame();
-        self.keep(frame.time, places(&frame, if model.name() == "flood" { "water" } else { "drops" }))
+        self.keep(frame.time, positions(&frame, if model.name() == "flood" { "water" } else { "drops" }))
     }
 
     fn glances_on(&self) -> Option<&Gpu> {
@@ -56,11 +56,11 @@ impl Sink for Album {
         let seen = match (&glance.on_device, &self.gpu) {
             (Some(particles), Some(gpu)) => {
                 let from = particles.origin;
-                let place = |place: [f32; 3]| std::array::from_fn(|axis| from[axis] + f64::from(place[axis]));
+                let position = |position: [f32; 3]| std::array::from_fn(|axis| from[axis] + f64::from(position[axis]));
                 let all = particles.read(gpu).unwrap();
-                all.iter().map(|particle| (u64::from(particle.id), place(particle.place))).collect()
+                all.iter().map(|particle| (u64::from(particle.id), position(particle.place))).collect()
             }
-            _ => places(&glance.frame, "drops"),
+            _ => positions(&glance.frame, "drops"),
         };
         self.keep(glance.frame.time, seen)
     }
@@ -105,7 +105,7 @@ fn glances_are_given_when_pictures_are_due_and_show_what_the_model_does() {
                 assert!(id == same_id && is_near, "{name}, {time} s: {one:?} {other:?}");
             }
         }
-        assert!(other.last().is_some_and(|(_, places)| places.len() > 10), "{name}");
+        assert!(other.last().is_some_and(|(_, positions)| positions.len() > 10), "{name}");
     }
 }
 

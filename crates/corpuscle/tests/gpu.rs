@@ -102,14 +102,14 @@ fn apart<const COUNT: usize>(mut both: [Vec<(u64, [f64; COUNT])>; 2]) -> [[f64; 
     })
 }
 
-/// Place, velocity and depth of each particle.
+/// Position, velocity and depth of each particle.
 fn water(model: &dyn Model) -> Vec<(u64, [f64; 5])> {
     let model: &dyn Any = model;
     let particles = model.downcast_ref::<SphSweFlood>().unwrap().particles();
     particles.iter().map(|p| (p.id, [p.x, p.y, p.u, p.v, p.depth])).collect()
 }
 
-/// Place, velocity, temperature, vapour and fog of each particle.
+/// Position, velocity, temperature, vapour and fog of each particle.
 fn air(model: &dyn Model) -> Vec<(u64, [f64; 9])> {
     let model: &dyn Any = model;
     let air = model.downcast_ref::<Dew>().unwrap().air().iter();
@@ -147,7 +147,7 @@ fn assert_map(name: &str, [host, device]: [&Map; 2], bound: f64) {
     assert!(flipped <= wet.len() / 100, "{name}, {}: {flipped} of {} cells", host.name, wet.len());
 }
 
-/// Places, m; velocities, m/s, and depths, m, where nothing is faster than 1 m/s or deeper than 1 m: after one step and after ten.
+/// Positions, m; velocities, m/s, and depths, m, where nothing is faster than 1 m/s or deeper than 1 m: after one step and after ten.
 const WATER: [(u64, f64); 2] = [(1, 3e-5), (9, 1e-4)];
 
 #[test]
@@ -162,7 +162,7 @@ fn built_in_floods_of_scheme_sph_swe_go_as_on_the_cpu() {
             step(&mut both, steps);
             let told = both.each_ref().map(|simulation| water(simulation.model()));
             let largest = |k: usize| told[0].iter().map(|(_, told)| told[k].abs()).fold(1.0, f64::max);
-            // Single precision tells places on grounds wider than 500 m less finely.
+            // Single precision tells positions on grounds wider than 500 m less finely.
             let size = (ground.into_iter().fold(0.0, f64::max) / 500.0).max(1.0);
             let (fastest, deepest) = (largest(2).hypot(largest(3)), largest(4));
             let scales = [size, size, fastest, fastest, deepest];
@@ -229,7 +229,7 @@ fn built_in_floods_of_scheme_voronoi_go_as_on_the_cpu() {
     }
 }
 
-/// Places, m; velocities, m/s; temperature, K; vapour and fog, parts of the mass: after one step and after ten.
+/// Positions, m; velocities, m/s; temperature, K; vapour and fog, parts of the mass: after one step and after ten.
 const AIR: [(u64, [f64; 4]); 2] = [(1, [3e-8, 3e-6, 1e-5, 1e-8]), (9, [1e-7, 2e-5, 1e-4, 1e-7])];
 
 /// Drops on the CPU beside air on the GPU are the same drops; of hundreds one may have merged and the other not.
@@ -241,10 +241,10 @@ fn dew_goes_as_on_the_cpu(scenes: &[(&str, f64, &str)]) {
     let of_few = ["number", "drops", "covered_area", "covered_part", "mean_radius", "wall_pairs", "fog"];
     for &(name, time, spacing) in scenes {
         let mut both = both_from(name, time, &[("dew.spacing_m", spacing)]);
-        for (steps, [place, velocity, temperature, part]) in AIR {
+        for (steps, [position, velocity, temperature, part]) in AIR {
             step(&mut both, steps);
             let told = both.each_ref().map(|simulation| air(simulation.model()));
-            let bounds = [place, place, place, velocity, velocity, velocity, temperature, part, part];
+            let bounds = [position, position, position, velocity, velocity, velocity, temperature, part, part];
             for ([_, farthest], bound) in apart(told).into_iter().zip(bounds) {
                 assert!(farthest < bound, "{name}, {steps} steps: {farthest}, not {bound}");
             }

@@ -101,14 +101,14 @@ fn lose(case: &Case, count: u32) {
     if require_gpu("a GPU that is lost").is_none() {
         return;
     }
-    let place = tempfile::tempdir().unwrap();
-    let whole = place.path().join("whole");
+    let root = tempfile::tempdir().unwrap();
+    let whole = root.path().join("whole");
     assert_eq!(case.record(&whole, &Gpu::open().unwrap(), None).unwrap().status, Status::Done);
     let (expected, expected_frames) = (gauges(&whole), frames(&whole));
     assert!(expected_frames.len() > 1);
     let (mut lost, mut resumed) = (0, 0);
     for number in 0..count {
-        let folder = place.path().join(format!("{number}"));
+        let folder = root.path().join(format!("{number}"));
         let part = (f64::from(number) + 0.5) / f64::from(count);
         let later = Duration::from_millis(u64::from(number * 7 % 20));
         let told = match case.record(&folder, &Gpu::open().unwrap(), Some((part, later))) {

@@ -2,14 +2,11 @@
 
 use crate::colour::{Colour, hex};
 use crate::svg::{Anchor, Svg};
-use crate::text::number;
+use crate::text::{number, prefix};
 use crate::ticks;
 
 /// Parts of the bar of colours.
 const SHADES: usize = 48;
-
-/// Prefixes of units, from large to small.
-const PREFIXES: [(f64, &str); 6] = [(1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
 
 /// Draws a bar of the colours of values from `low` to `high`, `width` wide from a position on; `colour` takes the fraction from low to high.
 /// Returns its lower end.
@@ -23,8 +20,8 @@ pub fn value_bar(
     let part = width / SHADES as f64;
     for shade in 0..SHADES {
         let colour = hex(colour((shade as f64 + 0.5) / SHADES as f64));
-        let place = [from + shade as f64 * part, top];
-        svg.styled_path(rectangle(place, [part + 0.5, 13.0]), true, "", &format!("fill:{colour}"));
+        let position = [from + shade as f64 * part, top];
+        svg.styled_path(rectangle(position, [part + 0.5, 13.0]), true, "", &format!("fill:{colour}"));
     }
     let step = ticks::step(high - low, 5);
     for value in ticks::multiples(low, high, step) {
@@ -67,11 +64,6 @@ pub fn length_label(length: f64, unit: &str) -> String {
     }
     let (factor, prefix) = prefix(length);
     format!("{} {prefix}{unit}", ticks::label(length / factor, length / factor))
-}
-
-/// The prefix of a unit that suits a length, and what it stands for.
-pub fn prefix(length: f64) -> (f64, &'static str) {
-    PREFIXES.into_iter().find(|(factor, _)| length >= factor * 0.999).unwrap_or(PREFIXES[5])
 }
 
 #[cfg(test)]

@@ -14,10 +14,10 @@ pub fn split(colour: u32) -> Colour {
 
 /// The colour of a value, as a fraction, 0 to 1, of that of the last colour.
 pub fn of_part(part: f64) -> Colour {
-    let place = part.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
-    let below = (place as usize).min(VIRIDIS.len() - 2);
+    let position = part.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    let below = (position as usize).min(VIRIDIS.len() - 2);
     let [low, high] = [split(VIRIDIS[below]), split(VIRIDIS[below + 1])];
-    mix(low, high, place - below as f64)
+    mix(low, high, position - below as f64)
 }
 
 /// A colour between two.

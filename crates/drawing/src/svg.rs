@@ -19,7 +19,7 @@ pub struct Figure {
     body: String,
 }
 
-/// Which end of a text stands at its place.
+/// Which end of a text stands at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     /// Its start.
@@ -91,7 +91,7 @@ impl Svg {
         self.put(format_args!(r#"<circle cx="{x}" cy="{y}" r="{radius}" class="{class}"/>"#));
     }
 
-    /// A text whose baseline starts, is centred or ends at a place.
+    /// A text whose baseline starts, is centred or ends at a position.
     pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, class: &str, text: &str) {
         let ([x, y], anchor, text) = ([x, y].map(at), anchor.name(), escape(text));
         self.put(format_args!(r#"<text x="{x}" y="{y}" text-anchor="{anchor}" class="{class}">{text}</text>"#));
@@ -113,18 +113,18 @@ impl Svg {
         self.put(format_args!("</g>"));
     }
 
-    /// A line through places, closed or not; one that is not a number breaks it.
-    pub fn path(&mut self, places: impl IntoIterator<Item = [f64; 2]>, closed: bool, class: &str) {
-        self.styled_path(places, closed, class, "");
+    /// A line through points, closed or not; one that is not a number breaks it.
+    pub fn path(&mut self, points: impl IntoIterator<Item = [f64; 2]>, closed: bool, class: &str) {
+        self.styled_path(points, closed, class, "");
     }
 
     /// A [`Svg::path`] with declarations of its own.
-    pub fn styled_path(&mut self, places: impl IntoIterator<Item = [f64; 2]>, closed: bool, class: &str, style: &str) {
+    pub fn styled_path(&mut self, points: impl IntoIterator<Item = [f64; 2]>, closed: bool, class: &str, style: &str) {
         let mut data = String::new();
         let mut command = 'M';
-        for place in places {
-            if place.iter().all(|value| value.is_finite()) {
-                let [x, y] = place.map(at);
+        for point in points {
+            if point.iter().all(|value| value.is_finite()) {
+                let [x, y] = point.map(at);
                 let _ = write!(data, "{command}{x} {y}");
                 command = 'L';
             } else {

@@ -2,6 +2,9 @@
 
 const THIN: char = '\u{2009}';
 
+/// Prefixes of units, from large to small.
+const PREFIXES: [(f64, &str); 6] = [(1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
+
 /// About three figures: `12 345`, `12.3`, `0.0123`, `3.2 × 10⁻⁷`.
 pub fn number(value: f64) -> String {
     let size = value.abs();
@@ -31,8 +34,8 @@ fn trimmed(value: f64, decimals: usize) -> String {
 fn grouped(value: f64) -> String {
     let digits = format!("{:.0}", value.abs());
     let mut text = String::from(if value < 0.0 { "-" } else { "" });
-    for (place, digit) in digits.char_indices() {
-        if place > 0 && (digits.len() - place) % 3 == 0 && digits.len() > 4 {
+    for (index, digit) in digits.char_indices() {
+        if index > 0 && (digits.len() - index) % 3 == 0 && digits.len() > 4 {
             text.push(THIN);
         }
         text.push(digit);
@@ -54,6 +57,11 @@ fn scientific(value: f64) -> String {
         })
         .collect();
     format!("{digits}{THIN}×{THIN}10{exponent}")
+}
+
+/// The prefix of a unit that suits a number, and what it stands for.
+pub fn prefix(size: f64) -> (f64, &'static str) {
+    PREFIXES.into_iter().find(|(factor, _)| size >= factor * 0.999).unwrap_or(PREFIXES[5])
 }
 
 /// An area given in m2, in m², ha or km².
@@ -78,7 +86,7 @@ pub fn any_time(seconds: f64) -> String {
     if seconds == 0.0 || seconds.abs() >= 0.1 || !seconds.is_finite() {
         return time(seconds);
     }
-    let (factor, prefix) = crate::bars::prefix(seconds.abs());
+    let (factor, prefix) = prefix(seconds.abs());
     format!("{} {prefix}s", short_number(seconds / factor))
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum EnsembleError {
     /// The plan cannot be used.
-    #[error("{}: {what}", place(path, *line))]
+    #[error("{}: {what}", location(path, *line))]
     Plan {
         /// The file.
         path: PathBuf,
@@ -66,7 +66,7 @@ impl From<corpuscle::output::OutputError> for EnsembleError {
     }
 }
 
-fn place(path: &Path, line: Option<usize>) -> String {
+fn location(path: &Path, line: Option<usize>) -> String {
     let path = path.display();
     line.map_or_else(|| path.to_string(), |line| format!("{path}:{line}"))
 }

@@ -1,12 +1,11 @@
 //! The folder of an ensemble: its scene, its plan, and a folder for each member.
 
-use crate::member::Record;
-use crate::{EnsembleError, Plan, Source};
-use corpuscle_atomic_file::{clear_unfinished, write_whole};
+use crate::layout::{FORMAT, write_text};
+use crate::{Chosen, EnsembleError, Plan, Record, Source};
+use corpuscle_atomic_file::clear_unfinished;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::fs;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 const ABOUT: &str = "ensemble.json";
@@ -15,48 +14,6 @@ const PLAN: &str = "plan.csv";
 const MEMBERS: &str = "members";
 /// What may stand in a folder before it is an ensemble's: another task of a job array may make it at the same moment.
 const OWN: [&str; 5] = [ABOUT, SCENE, PLAN, MEMBERS, "inputs"];
-/// Version of the layout, which the Python package writes too.
-pub(crate) const FORMAT: u32 = 1;
-
-/// Choice of the statistics that are computed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Chosen {
-    /// Maps; none is all.
-    pub maps: Option<Vec<String>>,
-    /// Thresholds of probabilities by map, in its unit; none is 0.3 m of `max_depth`, where there is that map.
-    pub above: Option<BTreeMap<String, Vec<f64>>>,
-    /// Percentiles of maps and gauges, from 0 to 100.
-    pub percentiles: Vec<f64>,
-    /// Columns of gauges; none is the first twelve.
-    pub gauges: Option<Vec<String>>,
-}
-
-impl Default for Chosen {
-    fn default() -> Self {
-        Self { maps: None, above: None, percentiles: vec![5.0, 50.0, 95.0], gauges: None }
-    }
-}
-
-impl Chosen {
-    /// Checks the numbers.
-    pub(crate) fn check(&self) -> Result<(), String> {
-        if self.percentiles.is_empty() || !self.percentiles.iter().all(|percent| (0.0..=100.0).contains(percent)) {
-            return Err(format!("statistics.percentiles = {:?}: must be numbers from 0 to 100", self.percentiles));
-        }
-        match self
-            .above
-            .iter()
-            .flatten()
-            .find(|(_, values)| values.is_empty() || values.iter().any(|value| !value.is_finite()))
-        {
-            Some((map, values)) => {
-                Err(format!("statistics.above.{map} = {values:?}: must be a list of finite numbers"))
-            }
-            None => Ok(()),
-        }
-    }
-}
 
 /// What `ensemble.json` has.
 #[derive(Debug, Serialize, Deserialize)]
@@ -228,9 +185,4 @@ fn scene_difference(stored: &str, given: &str) -> Option<String> {
     let longer =
         || (stored != given).then(|| format!("the stored {SCENE} has {stored} lines, the given scene {given}"));
     differing.or_else(longer)
-}
-
-/// Writes a text file whole or not at all.
-pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), EnsembleError> {
-    write_whole(path, |file| file.write_all(text.as_bytes())).map_err(EnsembleError::file(path))
 }

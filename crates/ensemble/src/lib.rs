@@ -6,19 +6,23 @@
 
 #![warn(missing_docs)]
 
+mod chosen;
 mod error;
 mod folder;
+mod layout;
 mod member;
 mod plan;
+mod record;
 mod results;
 mod run;
 mod source;
 mod statistics;
 
+pub use chosen::Chosen;
 pub use error::EnsembleError;
-pub use folder::{Chosen, Folder};
-pub use member::{Failure, Record};
+pub use folder::Folder;
 pub use plan::{Plan, PlanFile};
+pub use record::{Failure, Record};
 pub use results::{Written, write_results};
 pub use run::{Progress, Workers, run};
 pub use source::Source;

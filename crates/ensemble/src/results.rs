@@ -1,9 +1,8 @@
 //! Results of an ensemble: statistics over its finished members as files, and the report.
 
-use crate::folder::Chosen;
-use crate::member::{Record, axes, read_gauges, read_map};
+use crate::member::{axes, read_gauges, read_map};
 use crate::statistics::{Absent, MEMORY, Moments, Values, moments, percentiles, share_above};
-use crate::{EnsembleError, Folder, Source};
+use crate::{Chosen, EnsembleError, Folder, Record, Source};
 use corpuscle::Simulation;
 use corpuscle::model::{Chart, ChartAxis, ChartSeries, ChartStyle};
 use corpuscle::output::{EnsembleMap, EnsembleReport, EnsembleTable, GaugeTable};
@@ -113,11 +112,11 @@ impl<'a> Members<'a> {
     }
 
     fn gauges_of(&self, position: usize) -> Result<GaugeTable, EnsembleError> {
-        read_gauges(&self.place_of(position))
+        read_gauges(&self.folder_of(position))
     }
 
     /// Folder of a member by its position among the finished.
-    fn place_of(&self, position: usize) -> PathBuf {
+    fn folder_of(&self, position: usize) -> PathBuf {
         self.folder.member(self.finished[position])
     }
 
@@ -228,14 +227,14 @@ impl Computation<'_> {
         let mut maps = Maps::default();
         for (name, thresholds) in &above {
             for threshold in thresholds {
-                let read = |position: usize| read_map(&members.place_of(position), name, &axes);
+                let read = |position: usize| read_map(&members.folder_of(position), name, &axes);
                 let shares = share_above(&self.values(grid, &read), *threshold)?;
                 self.write_map(&format!("{name}_probability_above_{threshold}"), grid, &shares, &mut maps)?;
                 maps.probabilities.push(self.probability(name, *threshold, &shares));
             }
         }
         for name in &names {
-            let read = |position: usize| read_map(&members.place_of(position), name, &axes);
+            let read = |position: usize| read_map(&members.folder_of(position), name, &axes);
             let statistics = self.statistics(name, grid, &self.values(grid, &read), &mut maps)?;
             maps.statistics.push((name.clone(), statistics));
         }

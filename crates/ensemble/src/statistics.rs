@@ -155,7 +155,7 @@ where
         if all.is_empty() {
             all = vec![read[cells[0]]; cells.len() * values.members];
         }
-        cells.iter().enumerate().for_each(|(place, cell)| all[place * values.members + member] = read[*cell]);
+        cells.iter().enumerate().for_each(|(index, cell)| all[index * values.members + member] = read[*cell]);
     })?;
     all.par_chunks_mut(values.members).for_each(|of_cell| {
         of_cell.sort_by(|a, b| {

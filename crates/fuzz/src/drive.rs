@@ -73,10 +73,11 @@ fn record_panics() {
             if !IN_CALL.load(Ordering::Relaxed) {
                 return before(panic);
             }
-            let place = panic.location().map_or_else(String::new, |at| format!("{}:{}", short(at.file()), at.line()));
+            let location =
+                panic.location().map_or_else(String::new, |at| format!("{}:{}", short(at.file()), at.line()));
             let what = panic.payload_as_str().unwrap_or_default();
             let what: String = what.chars().filter(|c| !c.is_ascii_digit()).take(120).collect();
-            *PANIC.lock().unwrap_or_else(PoisonError::into_inner) = Some(format!("{place}: {what}"));
+            *PANIC.lock().unwrap_or_else(PoisonError::into_inner) = Some(format!("{location}: {what}"));
         }));
     });
 }
@@ -101,7 +102,7 @@ impl Failure {
     /// What failures are told apart by.
     pub fn kind(&self) -> String {
         match self {
-            Self::Panic(place) => format!("panic {place}"),
+            Self::Panic(location) => format!("panic {location}"),
             Self::Memory(_) => "too much memory".into(),
         }
     }
@@ -118,8 +119,8 @@ pub fn call(target: &Target, input: &[u8]) -> Result<(Result<String, String>, us
     let (result, memory) = measured(|| catch_unwind(AssertUnwindSafe(|| (target.read)(input))));
     IN_CALL.store(false, Ordering::Relaxed);
     let Ok(answer) = result else {
-        let place = PANIC.lock().unwrap_or_else(PoisonError::into_inner).take();
-        return Err(Failure::Panic(place.unwrap_or_default()));
+        let location = PANIC.lock().unwrap_or_else(PoisonError::into_inner).take();
+        return Err(Failure::Panic(location.unwrap_or_default()));
     };
     if memory > MEMORY + MEMORY_PER_BYTE * input.len() {
         return Err(Failure::Memory(memory));

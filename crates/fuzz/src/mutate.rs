@@ -104,8 +104,8 @@ impl Mutator {
         if self.pool.len() < self.kept + MOST {
             self.pool.push(input.to_vec());
         } else {
-            let place = self.kept + random.below(MOST);
-            self.pool[place] = input.to_vec();
+            let index = self.kept + random.below(MOST);
+            self.pool[index] = input.to_vec();
         }
     }
 
@@ -205,8 +205,8 @@ impl Mutator {
                 let (from, to) = *random.one_of(&lines);
                 let line = input[from..to].to_vec();
                 let times = if random.chance(0.9) { 1 } else { random.below(200) };
-                let place = random.one_of(&lines).0;
-                input.splice(place..place, line.repeat(times));
+                let start = random.one_of(&lines).0;
+                input.splice(start..start, line.repeat(times));
             }
             8 => {
                 let piece = random.one_of(&PIECES).as_bytes();

@@ -19,7 +19,7 @@ mod report;
 mod run_folder;
 mod stills;
 mod summary;
-mod wall_places;
+mod wall_positions;
 mod whole;
 
 pub use album::put_into_report;
@@ -38,4 +38,4 @@ pub use report::{
 pub use run_folder::{RunFolder, followed_paths, next_run_folder};
 pub use stills::{write_drawing, write_picture};
 pub use summary::{LedgerEntry, Status, Summary, ledger_entries};
-pub use wall_places::WallPlaces;
+pub use wall_positions::WallPositions;

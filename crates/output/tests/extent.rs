@@ -37,9 +37,9 @@ const CELLS: f64 = (20 * 15 - 16 + 20) as f64;
 /// Signed areas of the rings of each polygon.
 fn areas(geojson: &Value) -> Vec<Vec<f64>> {
     let ring_area = |ring: &Value| -> f64 {
-        let places: Vec<[f64; 2]> = serde_json::from_value(ring.clone()).unwrap();
-        assert_eq!(places.first(), places.last());
-        places.windows(2).map(|pair| 0.5 * (pair[0][0] * pair[1][1] - pair[1][0] * pair[0][1])).sum()
+        let positions: Vec<[f64; 2]> = serde_json::from_value(ring.clone()).unwrap();
+        assert_eq!(positions.first(), positions.last());
+        positions.windows(2).map(|pair| 0.5 * (pair[0][0] * pair[1][1] - pair[1][0] * pair[0][1])).sum()
     };
     let polygons = geojson["features"][0]["geometry"]["coordinates"].as_array().unwrap();
     polygons.iter().map(|polygon| polygon.as_array().unwrap().iter().map(ring_area).collect()).collect()
@@ -61,8 +61,8 @@ fn without_reference_system_coordinates_are_the_terrains_own() {
     assert_eq!(properties["area_m2"], CELLS * 100.0);
     assert!(properties["note"].as_str().unwrap().contains("no reference system"));
     // South-west corner of the lake: column 5, row 20 from the north.
-    let places = geojson["features"][0]["geometry"]["coordinates"][0][0].as_array().unwrap();
-    assert!(places.contains(&serde_json::json!([1050.0, 2100.0])));
+    let positions = geojson["features"][0]["geometry"]["coordinates"][0][0].as_array().unwrap();
+    assert!(positions.contains(&serde_json::json!([1050.0, 2100.0])));
 }
 
 #[test]
@@ -72,10 +72,10 @@ fn projected_terrain_gives_longitude_and_latitude() {
     let terrain = terrain(folder.path(), Some("EPSG:32633"), [500_000.0, 5_300_000.0], 10.0);
     let geojson = extent(&terrain, folder.path());
     assert_eq!(geojson["features"][0]["properties"].get("note"), None);
-    let places = geojson["features"][0]["geometry"]["coordinates"][0][0].as_array().unwrap();
-    for place in places {
-        let [longitude, latitude] = [0, 1].map(|axis| place[axis].as_f64().unwrap());
-        assert!((15.0..15.01).contains(&longitude) && (47.8..47.9).contains(&latitude), "{place}");
+    let positions = geojson["features"][0]["geometry"]["coordinates"][0][0].as_array().unwrap();
+    for position in positions {
+        let [longitude, latitude] = [0, 1].map(|axis| position[axis].as_f64().unwrap());
+        assert!((15.0..15.01).contains(&longitude) && (47.8..47.9).contains(&latitude), "{position}");
     }
     // A degree of latitude is 111.2 km here, one of longitude 74.8 km.
     let [lake, island] = [0, 1].map(|ring| areas(&geojson)[0][ring] * 111_190.0 * 74_790.0);

@@ -71,7 +71,7 @@ fn xyz_says_what_stands_in_its_columns() {
         "Lattice=\"4 0 0 0 1.5 0 0 0 0.25\" Origin=\"-1 0 0.5\" pbc=\"F F F\" \
          Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:depth:R:1:flow:R:3 Time=0.30000000000000004"
     );
-    // As many words as the columns say, with the place behind the species.
+    // As many words as the columns say, with the position behind the species.
     assert_eq!(lines[2].split(' ').count(), 1 + 3 + 1 + 3 + 1 + 1 + 1 + 3);
     assert!(lines[2].starts_with("water 0.21000000000000002 "), "{}", lines[2]);
 }

@@ -28,13 +28,13 @@ impl Balls {
             let side = (count as f64).powf(1.0 / gas.dimensions() as f64).ceil() as u64;
             for k in 0..count {
                 let index = [k % side, k / side % side, k / side / side];
-                let mut place = [0.0; 3];
+                let mut position = [0.0; 3];
                 for axis in 0..gas.dimensions() {
                     let part = (index[axis] as f64 + 0.5) / side as f64;
-                    place[axis] = from[axis] + part * (to[axis] - from[axis]);
+                    position[axis] = from[axis] + part * (to[axis] - from[axis]);
                 }
                 set.id.push(id);
-                set.position.push(place);
+                set.position.push(position);
                 let speed = 2.5 * (k as f64 + 0.5) / count as f64 * (species.temperature / species.mass).sqrt();
                 set.velocity.push([speed, 0.0, 0.0]);
                 set.radius.push(species.radius);

@@ -59,7 +59,7 @@ fn it_has_what_a_planner_needs_and_needs_nothing_else() {
     ] {
         assert!(html.contains(text), "`{text}` is not in the report");
     }
-    // Self-contained: no script, and every address is data or a place on the page.
+    // Self-contained: no script, and every address is data or a position on the page.
     assert!(!html.contains("<script") && !html.contains("@import") && !html.contains("url("));
     for (at, _) in html.match_indices("href=\"") {
         let address = &html[at + 6..at + 16];

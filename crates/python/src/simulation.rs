@@ -5,8 +5,9 @@ use crate::error::{exception, run_error, scene_error};
 use crate::watch::watched;
 use corpuscle::model::{Balance, ModelError};
 use corpuscle::models::of;
+use corpuscle::models::parameters;
 use corpuscle::output::{FrameFormat, Summary, write_picture};
-use corpuscle::parameters::{Current, as_number, parameters, set, value_at};
+use corpuscle::parameters::{Current, as_number, set, value_at};
 use corpuscle::pictures::{Moment, PictureSettings, Pictures};
 use corpuscle::scene::Scene;
 use corpuscle::{Error, Progress, Recorder, Sink};
@@ -90,7 +91,7 @@ impl State {
             let what = format!("{key} = {value}: this is no value of it; give a number, as in the scene");
             return Err(ModelError::Setup(what).into());
         };
-        change.make(&mut self.simulation)?;
+        self.simulation.make_change(change)?;
         self.changes = changes;
         Ok(())
     }

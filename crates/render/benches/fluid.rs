@@ -59,7 +59,7 @@ fn droplet(index: usize, side: usize) -> Droplet {
     let (x, y) = ((index % side) as f64, (index / side) as f64);
     let slope = 0.06 * (0.3 * x).cos();
     Droplet {
-        place: [x, y, 0.2 * (0.3 * x).sin()],
+        position: [x, y, 0.2 * (0.3 * x).sin()],
         radius: 1.4,
         normal: [-slope, 0.0, 1.0],
         flatness: 0.12,

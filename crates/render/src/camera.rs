@@ -67,9 +67,9 @@ impl Camera {
         let above = away.cross(across);
         let slope = (0.5 * field_of_view).tan() * (1.0 - 2.0 * margin);
         let reach = |corner: DVec3| {
-            let place = corner - stage.centre();
-            let sideways = (place.dot(above).abs() / slope).max(place.dot(across).abs() / (slope * aspect));
-            sideways + place.dot(away)
+            let offset = corner - stage.centre();
+            let sideways = (offset.dot(above).abs() / slope).max(offset.dot(across).abs() / (slope * aspect));
+            sideways + offset.dot(away)
         };
         let distance = stage.corners().into_iter().map(reach).fold(0.0, f64::max);
         Self {
@@ -107,7 +107,11 @@ impl Camera {
 
     /// From stage coordinates to those of the eye: x right, y up, looking along -z.
     pub(crate) fn view_from_world(&self, stage: &Stage) -> Mat4 {
-        view::look_at_mat4(stage.place(self.eye.into()), stage.place(self.target.into()), self.up.as_vec3().normalize())
+        view::look_at_mat4(
+            stage.position(self.eye.into()),
+            stage.position(self.target.into()),
+            self.up.as_vec3().normalize(),
+        )
     }
 
     /// From the eye's coordinates to clip space; depth 1 is near, 0 far.
@@ -127,7 +131,7 @@ impl Camera {
 
     /// Nearest and farthest distance from the eye that a lens without perspective shows.
     fn depths(&self, stage: &Stage) -> [f32; 2] {
-        let distance = (stage.place(self.eye.into()) - stage.place(self.target.into())).length();
+        let distance = (stage.position(self.eye.into()) - stage.position(self.target.into())).length();
         [distance - DEPTH, distance + DEPTH]
     }
 
@@ -160,7 +164,7 @@ pub struct ProjectedBall {
 impl Projection {
     /// A ball with a radius, m, in the picture; none behind the eye.
     pub fn ball(&self, middle: [f64; 3], radius: f64) -> Option<ProjectedBall> {
-        let at = self.clip * self.stage.place(middle).extend(1.0);
+        let at = self.clip * self.stage.position(middle).extend(1.0);
         (at.w > 0.0).then(|| ProjectedBall {
             at: [0.5 + 0.5 * f64::from(at.x / at.w), 0.5 - 0.5 * f64::from(at.y / at.w)],
             radius: 0.5 * f64::from(self.scale * self.stage.length(radius) / at.w),
@@ -190,7 +194,7 @@ mod tests {
             let camera = Camera::orbit(&stage, [azimuth, elevation], 0.7, 1.5, 0.0);
             let clip = camera.clip_from_view(&stage, 1.5) * camera.view_from_world(&stage);
             let reach = |corner: DVec3| {
-                let at = clip.project_point3(stage.place(corner.into()));
+                let at = clip.project_point3(stage.position(corner.into()));
                 assert!(at.z > 0.0 && at.z < 1.0);
                 at.x.abs().max(at.y.abs())
             };
@@ -202,10 +206,10 @@ mod tests {
     #[test]
     fn a_camera_that_comes_nearer_shows_less_of_what_it_looks_at() {
         let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
-        let place = DVec3::new(15.0, 5.0, 0.0);
+        let position = DVec3::new(15.0, 5.0, 0.0);
         for whole in [Camera::plan(&stage, 2.0, [0.0; 4]), Camera::orbit(&stage, [0.3, 0.9], 0.5, 2.0, 0.0)] {
-            let near = whole.looking_at(place).nearer(4.0);
-            let [x, y] = near.project(&stage, 2.0, place.into()).unwrap();
+            let near = whole.looking_at(position).nearer(4.0);
+            let [x, y] = near.project(&stage, 2.0, position.into()).unwrap();
             assert!((x - 0.5).abs() < 1e-6 && (y - 0.5).abs() < 1e-6);
             let width = |camera: &Camera| {
                 let ends = [-0.01, 0.01].map(|off| camera.project(&stage, 2.0, (camera.target + off).into()).unwrap());
@@ -220,7 +224,7 @@ mod tests {
         let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
         let camera = Camera::plan(&stage, 2.0, [0.0; 4]);
         let clip = camera.clip_from_view(&stage, 2.0) * camera.view_from_world(&stage);
-        let at = clip.project_point3(stage.place([20.0, 10.0, 0.0]));
+        let at = clip.project_point3(stage.position([20.0, 10.0, 0.0]));
         assert!((at.x - 1.0).abs() < 1e-5 && (at.y - 1.0).abs() < 1e-5, "{at}");
     }
 
@@ -229,7 +233,7 @@ mod tests {
         let stage = Stage::new([0.0; 3], [10.0, 10.0, 0.0]);
         let camera = Camera::plan(&stage, 2.0, [0.1, 0.3, 0.2, 0.05]);
         // Its height is what limits it: three quarters of the picture are the box's side.
-        let corner = |place| camera.project(&stage, 2.0, place).unwrap();
+        let corner = |position| camera.project(&stage, 2.0, position).unwrap();
         let ([left, bottom], [right, top]) = (corner([0.0; 3]), corner([10.0, 10.0, 0.0]));
         assert!((bottom - 0.8).abs() < 1e-5 && (top - 0.05).abs() < 1e-5, "{bottom} {top}");
         assert!((2.0 * (right - left) - 0.75).abs() < 1e-5);

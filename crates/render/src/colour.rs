@@ -27,10 +27,10 @@ impl ColourTable {
     pub fn colour(&self, value: f32) -> [u8; 3] {
         let part = ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
         let last = self.colours.len() - 1;
-        let place = if part.is_nan() { 0.0 } else { part * last as f32 };
-        let below = (place as usize).min(last.saturating_sub(1));
+        let position = if part.is_nan() { 0.0 } else { part * last as f32 };
+        let below = (position as usize).min(last.saturating_sub(1));
         let [from, to] = [self.colours[below], self.colours[(below + 1).min(last)]];
-        let mix = place - below as f32;
+        let mix = position - below as f32;
         std::array::from_fn(|k| (f32::from(from[k]) + (f32::from(to[k]) - f32::from(from[k])) * mix).round() as u8)
     }
 

@@ -11,7 +11,7 @@ use corpuscle_gpu::{Gpu, wgpu};
 /// 4. [`Drawable::draw_through`], one thing after another: transparent things (water, glass) draw over a copy of
 ///    all that is behind it.
 ///
-/// Shaders begin with `#import view` (camera, places, lines of sight), `#import sky` (what is mirrored) or `#import light` (light
+/// Shaders begin with `#import view` (camera, positions, lines of sight), `#import sky` (what is mirrored) or `#import light` (light
 /// on surfaces, shadows); group 0 is bound already, a thing's own groups start at 1. Coordinates are those of the stage; depth is
 /// 1 near and 0 far, so nearer is *greater*; colours are linear light.
 pub trait Drawable {

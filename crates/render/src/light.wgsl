@@ -10,13 +10,13 @@ fn noise(pixel: vec2f) -> f32 {
     return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
 }
 
-// The part of the sun that a place sees. The edge of a shadow is as wide as the sun is seen over a typical distance; taps on
+// The part of the sun that a position sees. The edge of a shadow is as wide as the sun is seen over a typical distance; taps on
 // a spiral turned from pixel to pixel.
-fn sunshine(place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
-    return sunshine_by(SHADOW_TAPS, place, normal, pixel);
+fn sunshine(position: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
+    return sunshine_by(SHADOW_TAPS, position, normal, pixel);
 }
 
-fn sunshine_by(taps: i32, place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
+fn sunshine_by(taps: i32, position: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
     // A map of one pixel stands for none: nothing throws shadows.
     if textureDimensions(sun_depth).x == 1u {
         return 1.0;
@@ -24,7 +24,7 @@ fn sunshine_by(taps: i32, place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
     let texel = 2.04 / f32(textureDimensions(sun_depth).x);
     let slant = clamp(dot(normal, view.sun.xyz), 0.0, 1.0);
     // Moved off the surface by as much as a texel's slant hides.
-    let lifted = place + normal * texel * (1.5 + 2.0 * (1.0 - slant));
+    let lifted = position + normal * texel * (1.5 + 2.0 * (1.0 - slant));
     let seen = view.sun_from_world * vec4f(lifted, 1.0);
     let uv = seen.xy * vec2f(0.5, -0.5) + 0.5;
     if any(uv < vec2f(0.0)) || any(uv > vec2f(1.0)) {
@@ -48,9 +48,9 @@ fn sunshine_by(taps: i32, place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
 // 3.912 = range over this distance (1924).
 const CLEAR_AIR: f32 = 12800.0;
 
-// Light from a place as it comes through the air, which adds light of its own.
-fn hazed(light: vec3f, place: vec3f) -> vec3f {
-    let left = exp(-length(place - view.eye.xyz) * view.frame.z / CLEAR_AIR);
+// Light from a position as it comes through the air, which adds light of its own.
+fn hazed(light: vec3f, position: vec3f) -> vec3f {
+    let left = exp(-length(position - view.eye.xyz) * view.frame.z / CLEAR_AIR);
     // Indoors there is none, and a map is seen from straight above.
     return select(mix(view.horizon.rgb, light, left), light, (view.frame.w > 0.5) | (view.eye.w < 0.5));
 }

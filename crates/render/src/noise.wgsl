@@ -1,6 +1,6 @@
 // Numbers that look random and smooth noise made of them, in the plane and in space (Hoskins, "Hash without sine", 2014).
 
-// A number from 0 to 1 for a place in the plane.
+// A number from 0 to 1 for a position in the plane.
 fn scattered(at: vec2f) -> f32 {
     let bent = fract(at.xyx * 0.1031);
     let turned = bent + dot(bent, bent.yzx + 33.33);
@@ -26,24 +26,24 @@ fn bumps(at: vec2f) -> Bumps {
     return Bumps(mix(rows.x, rows.y, blend.x), change * vec2f(rows.y - rows.x, columns.y - columns.x));
 }
 
-// Three numbers from 0 to 1 for a place in the plane.
+// Three numbers from 0 to 1 for a position in the plane.
 fn three_scattered(at: vec2f) -> vec3f {
     var mixed = fract(at.xyx * vec3f(0.1031, 0.1030, 0.0973));
     mixed += dot(mixed, mixed.yxz + 33.33);
     return fract((mixed.xxy + mixed.yzz) * mixed.zyx);
 }
 
-// A number from 0 to 1 for a place in space.
-fn scattered_in_space(place: vec3f) -> f32 {
-    let bent = fract(place * 0.1031);
+// A number from 0 to 1 for a position in space.
+fn scattered_in_space(position: vec3f) -> f32 {
+    let bent = fract(position * 0.1031);
     let turned = bent + dot(bent, bent.zyx + 31.32);
     return fract((turned.x + turned.y) * turned.z);
 }
 
 // Noise from 0 to 1 with bumps of length 1, and its slope along the three axes.
-fn bumps_in_space(place: vec3f) -> vec4f {
-    let cell = floor(place);
-    let part = place - cell;
+fn bumps_in_space(position: vec3f) -> vec4f {
+    let cell = floor(position);
+    let part = position - cell;
     let blend = part * part * (3.0 - 2.0 * part);
     let change = 6.0 * part * (1.0 - part);
     var corners = array(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);

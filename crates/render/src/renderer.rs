@@ -136,9 +136,9 @@ impl Renderer {
             StaticUse::Changed => return self.draw_some(encoder, target, view, light, things, Which::All),
             StaticUse::Rests => {
                 self.draw_some(encoder, target, view, light, things, Which::Static);
-                static_layer.keep(&self.gpu, encoder, target);
+                static_layer.keep(&self.gpu, encoder, [&target.colour, &target.depth]);
             }
-            StaticUse::Kept => static_layer.lay(encoder, target),
+            StaticUse::Kept => static_layer.lay(encoder, [&target.colour, &target.depth]),
         }
         self.draw_some(encoder, target, view, light, things, Which::Moving);
     }

@@ -2,6 +2,9 @@
 
 use corpuscle_gpu::{Layout, SharedPiece, wgpu};
 
+/// Acceleration of free fall, m/s2, in double precision: `GRAVITY` of shaders.
+pub(crate) const FREE_FALL: f64 = 9.81;
+
 corpuscle_gpu::declare! {
     constants {
         /// Circumference of a circle over its width.
@@ -19,7 +22,7 @@ corpuscle_gpu::declare! {
         /// Numbers a pixel in which splats add up water, foam and flow.
         pub(crate) const SUMS: u32 = 7;
         /// m/s2.
-        pub(crate) const GRAVITY: f32 = crate::fluid::GRAVITY as f32;
+        pub(crate) const GRAVITY: f32 = FREE_FALL as f32;
         /// sRGB (IEC 61966-2-1): a straight line for dark colours, `linear * SRGB_SLOPE`, and `SRGB_SCALE * linear^(1 / SRGB_EXPONENT) - SRGB_OFFSET` above.
         pub(crate) const SRGB_SLOPE: f32 = 12.92;
         /// See above.
@@ -33,7 +36,7 @@ corpuscle_gpu::declare! {
         /// The same in linear light.
         pub(crate) const SRGB_LINE_END_LINEAR: f32 = 0.003_130_8;
         /// Quads along a side of a tile of the ground.
-        pub(crate) const QUADS: u32 = crate::terrain::QUADS_OF_TILE;
+        pub(crate) const QUADS: u32 = 64;
     }
     structs {
         /// Camera, light and size of a picture. All in stage coordinates: the half diagonal of what is shown is 1. Depth is 1 near and 0 far; nothing drawn is 0.
@@ -52,7 +55,7 @@ corpuscle_gpu::declare! {
             pub(crate) view_from_clip: [[f32; 4]; 4],
             /// From the stage to the clip space of the sun's depth map.
             pub(crate) sun_from_world: [[f32; 4]; 4],
-            /// Place of the eye; 1 with perspective, 0 without.
+            /// Position of the eye; 1 with perspective, 0 without.
             pub(crate) eye: [f32; 4],
             /// Line of sight; height of a pixel, at distance 1 where there is perspective.
             pub(crate) forward: [f32; 4],
@@ -111,7 +114,7 @@ corpuscle_gpu::declare! {
         /// A drop as a cap on a surface, in stage coordinates.
         pub(crate) struct CapInstance {
             /// Middle of the disc that it covers.
-            pub(crate) place: [f32; 3],
+            pub(crate) position: [f32; 3],
             /// Radius of the disc.
             pub(crate) radius: f32,
             /// The way out of the surface, of length 1.
@@ -216,8 +219,8 @@ corpuscle_gpu::declare! {
     structs {
         /// A corner of a surface, in stage units.
         pub(crate) struct Vertex {
-            /// Place; of sides cut upright the depth below the surface.
-            pub(crate) place: [f32; 4],
+            /// Position; of sides cut upright the depth below the surface.
+            pub(crate) position: [f32; 4],
             /// Direction out of the surface.
             pub(crate) normal: [f32; 4],
         }
@@ -225,7 +228,7 @@ corpuscle_gpu::declare! {
         /// A particle of a fluid as a ball, or flattened along a direction; in stage coordinates.
         pub(crate) struct DropletInstance {
             /// Middle.
-            pub(crate) place: [f32; 3],
+            pub(crate) position: [f32; 3],
             /// Radius across `normal`.
             pub(crate) radius: f32,
             /// The direction along which it is flattened, of length 1.
@@ -238,6 +241,16 @@ corpuscle_gpu::declare! {
             pub(crate) flow: [f32; 2],
             /// Fills up.
             pub(crate) unused: [f32; 2],
+        }
+
+        /// A tile of the ground.
+        pub(crate) struct TileInstance {
+            /// Its first node, eastwards and northwards.
+            pub(crate) first: [u32; 2],
+            /// How many nodes of the ground its own are apart.
+            pub(crate) stride: u32,
+            /// Fills up.
+            pub(crate) unused: u32,
         }
 
         /// A piece of a tube, in stage coordinates.

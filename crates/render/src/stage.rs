@@ -30,7 +30,7 @@ impl Stage {
     }
 
     /// A point of the world, m, in stage coordinates.
-    pub fn place(&self, point: [f64; 3]) -> Vec3 {
+    pub fn position(&self, point: [f64; 3]) -> Vec3 {
         ((DVec3::from(point) - self.centre()) / self.unit()).as_vec3()
     }
 
@@ -48,7 +48,7 @@ mod tests {
     fn corners_lie_at_distance_one() {
         let stage = Stage::new([1e6, 2e6, 100.0], [1e6 + 2000.0, 2e6 + 1000.0, 300.0]);
         for corner in [[1e6, 2e6, 100.0], [1e6 + 2000.0, 2e6 + 1000.0, 300.0], [1e6, 2e6 + 1000.0, 100.0]] {
-            assert!((stage.place(corner).length() - 1.0).abs() < 1e-6);
+            assert!((stage.position(corner).length() - 1.0).abs() < 1e-6);
         }
         assert_eq!(Stage::new([2.0; 3], [2.0; 3]).unit(), 1.0);
     }

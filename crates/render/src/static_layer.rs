@@ -1,10 +1,9 @@
 //! The static layer: static things are drawn once, and kept from picture to picture while the camera rests: in plain light, and in light that casts
 //! shadows where all things that cast one are static.
 
-use crate::target::{COLOUR_FORMAT, DEPTH_FORMAT};
-use crate::view::SHADOW_PIXELS;
-use crate::view::depth_map;
-use crate::{Drawable, Light, Target};
+use crate::formats::{COLOUR_FORMAT, DEPTH_FORMAT};
+use crate::view::{SHADOW_PIXELS, depth_map};
+use crate::{Drawable, Light};
 use corpuscle_gpu::{Gpu, wgpu};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -69,13 +68,13 @@ impl StaticLayer {
         if std::mem::replace(&mut self.drawn, true) { StaticUse::Kept } else { StaticUse::Rests }
     }
 
-    /// Stores the layer from a target.
-    pub fn keep(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &Target) {
+    /// Stores the layer from the colour and depth of a target.
+    pub fn keep(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: [&wgpu::Texture; 2]) {
         let kept = self.textures.get_or_insert_with(|| {
             [("static colours", COLOUR_FORMAT), ("static depth", DEPTH_FORMAT)].map(|(label, format)| {
                 gpu.device.create_texture(&wgpu::TextureDescriptor {
                     label: Some(label),
-                    size: target.colour.size(),
+                    size: target[0].size(),
                     mip_level_count: 1,
                     sample_count: 1,
                     dimension: wgpu::TextureDimension::D2,
@@ -85,13 +84,13 @@ impl StaticLayer {
                 })
             })
         });
-        copy(encoder, [&target.colour, &target.depth], [&kept[0], &kept[1]]);
+        copy(encoder, target, [&kept[0], &kept[1]]);
     }
 
-    /// Copies the stored layer into a target.
-    pub fn lay(&self, encoder: &mut wgpu::CommandEncoder, target: &Target) {
+    /// Copies the stored layer into the colour and depth of a target.
+    pub fn lay(&self, encoder: &mut wgpu::CommandEncoder, target: [&wgpu::Texture; 2]) {
         if let Some([colour, depth]) = &self.textures {
-            copy(encoder, [colour, depth], [&target.colour, &target.depth]);
+            copy(encoder, [colour, depth], target);
         }
     }
 }

@@ -1,16 +1,10 @@
 //! Render targets.
 
 use crate::RenderError;
+use crate::formats::{COLOUR_FORMAT, DEPTH_FORMAT, PICTURE_FORMAT};
 use crate::static_layer::StaticLayer;
 use corpuscle_gpu::{Gpu, texture_2d, wgpu};
 use std::sync::Mutex;
-
-/// Format of colours while a picture is drawn: linear light.
-pub const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Format of depth: 1 near, 0 far.
-pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Format of the finished picture: sRGB bytes.
-pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// A render target: colour and depth with several samples a pixel, the opaque scene behind transparent
 /// things, and the finished picture. Reused from picture to picture of a film.

@@ -91,7 +91,7 @@ fn uniform(
         clip_from_view: columns(clip_from_view),
         view_from_clip: columns(clip_from_view.inverse()),
         sun_from_world: columns(sun_from_world),
-        eye: stage.place(camera.eye.into()).extend(perspective).into(),
+        eye: stage.position(camera.eye.into()).extend(perspective).into(),
         forward: camera.forward().extend(tall / height as f32).into(),
         sun: light.towards_sun().extend(light.softness.tan()).into(),
         sunlight: Vec3::from(light.sunlight).extend(light.ambient).into(),

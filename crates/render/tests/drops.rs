@@ -64,9 +64,9 @@ fn changed(one: &Image, other: &Image) -> usize {
 /// Mean and standard deviation of brightness in the middle of a picture.
 fn brightness(image: &Image) -> [f64; 2] {
     let range = PIXELS / 4..3 * PIXELS / 4;
-    let places = range.clone().flat_map(|y| range.clone().map(move |x| (x, y)));
+    let positions = range.clone().flat_map(|y| range.clone().map(move |x| (x, y)));
     let values: Vec<f64> =
-        places.map(|(x, y)| image.pixel(x, y)[..3].iter().map(|byte| f64::from(*byte)).sum::<f64>() / 3.0).collect();
+        positions.map(|(x, y)| image.pixel(x, y)[..3].iter().map(|byte| f64::from(*byte)).sum::<f64>() / 3.0).collect();
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
     [mean, square.sqrt()]
@@ -97,8 +97,8 @@ fn fine_droplets_blur_and_whiten_by_the_area_they_cover() {
     let fog = |side: usize| {
         let step = 4.0 / side as f64;
         let radius = 4e-3;
-        let place = move |k: usize| (k as f64 + 0.5) * step;
-        let all = (0..side * side).map(move |k| cap(place(k % side), place(k / side), radius));
+        let position = move |k: usize| (k as f64 + 0.5) * step;
+        let all = (0..side * side).map(move |k| cap(position(k % side), position(k / side), radius));
         (std::f64::consts::PI * radius * radius / (step * step), table.caps(all))
     };
     let [bare_mean, bare_contrast] = brightness(&table.draw(&mut []));

@@ -73,7 +73,7 @@ fn pond(flow: impl Fn(f64) -> [f64; 2], foam: f64, spacing: f64) -> Vec<Droplet>
     let column = |index: usize| {
         let at = [index % columns, index / columns].map(|at| (at as f64 + 0.5) * spacing);
         Droplet {
-            place: [at[0], at[1], -0.17],
+            position: [at[0], at[1], -0.17],
             radius: 1.4 * spacing,
             normal: [0.0, 0.0, 1.0],
             flatness: 0.12,
@@ -192,7 +192,7 @@ fn ground_beside_water_is_darker_where_it_is_wet() {
         fluid.fill(gpu, droplets);
         table.draw(&stage, &camera, &Light::day().without_shadows(), &mut [&mut ground, &mut fluid])
     };
-    let west: Vec<Droplet> = pond(still, 0.0, 1.0).into_iter().filter(|droplet| droplet.place[0] < 20.0).collect();
+    let west: Vec<Droplet> = pond(still, 0.0, 1.0).into_iter().filter(|droplet| droplet.position[0] < 20.0).collect();
     let (dry, wet) = (draw(Vec::new()), draw(west));
     let at = |image: &Image, x: f64| {
         let [u, v] = camera.project(&stage, ASPECT, [x, 12.0, -1.0]).unwrap();
@@ -217,7 +217,7 @@ fn ground_that_was_under_water_is_darker_until_it_has_dried() {
     let mut fluid = FluidPainter::new(&table.renderer).fluid(gpu, &stage, style).unwrap();
     let mut draw = |time, high: bool| {
         // Discs reach beyond the shore, as those of particles on a slope do.
-        let is_wet = |droplet: &Droplet| droplet.place[1] < if high { 13.5 } else { 5.0 };
+        let is_wet = |droplet: &Droplet| droplet.position[1] < if high { 13.5 } else { 5.0 };
         fluid.fill(gpu, pond(still, 0.0, 1.0).into_iter().filter(is_wet));
         fluid.set_time(gpu, time);
         table.draw(&stage, &camera, &Light::day().without_shadows(), &mut [&mut ground, &mut fluid])

@@ -6,7 +6,7 @@ use corpuscle_gpu::{Image, require_gpu};
 use corpuscle_model::SolidShape;
 use corpuscle_render::{
     Axes, BallPainter, BallStyle, Border, Camera, Cap, CapPainter, ColourTable, Drawable, Droplet, Floor, FluidPainter,
-    FluidStyle, HeightField, Key, KeyPlace, Light, LineStyle, Mark, Overlay, Renderer, Shading, Solid, SolidStyle,
+    FluidStyle, HeightField, Key, KeyPosition, Light, LineStyle, Mark, Overlay, Renderer, Shading, Solid, SolidStyle,
     Stage, Target, Terrain, TubePainter, TubeStyle, WaterSides, box_edges, natural_colours,
 };
 use std::path::Path;
@@ -91,8 +91,8 @@ fn gas(table: &Table, left_out: &str) -> Image {
     let gpu = table.renderer.gpu();
     let stage = Stage::new([0.0; 3], [8.0, 8.0, 5.0]);
     let camera = Camera::orbit(&stage, [-1.0, 0.4], 0.5, ASPECT, 0.1);
-    let place = |k: usize| [0.7 + (k % 5) as f64 * 1.6, 0.7 + (k / 5 % 5) as f64 * 1.6, 0.6 + (k / 25) as f64 * 1.5];
-    let balls = (0..75).filter(|k| k % 4 != 1).map(|k| (place(k), 0.6, (k % 11) as f64 / 10.0));
+    let position = |k: usize| [0.7 + (k % 5) as f64 * 1.6, 0.7 + (k / 5 % 5) as f64 * 1.6, 0.6 + (k / 25) as f64 * 1.5];
+    let balls = (0..75).filter(|k| k % 4 != 1).map(|k| (position(k), 0.6, (k % 11) as f64 / 10.0));
     let style = BallStyle::new(viridis());
     let mut balls = BallPainter::new(&table.renderer).balls(gpu, &stage, &style, balls);
     let tubes = TubePainter::new(&table.renderer);
@@ -170,10 +170,10 @@ fn plan(table: &Table, left_out: &str) -> Image {
         line(LineStyle::Partition, [[8.0, 0.0], [8.0, 3.0]], [0.0, 0.0]),
         Border::Piston { ends: [[12.0, 0.0], [12.0, 9.0]], outwards: [1.0, 0.0], rod: 3.0 },
     ];
-    let marks = |place: [f64; 3]| [Mark::Ring(place, 0.7), Mark::Start([place[0] + 1.0, place[1], 0.0])];
+    let marks = |position: [f64; 3]| [Mark::Ring(position, 0.7), Mark::Start([position[0] + 1.0, position[1], 0.0])];
     let whole = Overlay {
         scale_bar: Some("m".into()),
-        key_place: KeyPlace::Corner,
+        key_position: KeyPosition::Corner,
         lines: [
             LineStyle::Trajectory,
             LineStyle::Wall,
@@ -373,8 +373,8 @@ fn ground_without_heights_is_cut_out_and_water_has_a_face_at_its_border() {
         |things: &mut [&mut dyn Drawable]| table.draw(&stage, &camera, &Light::day(), things, &Overlay::default());
     let dry = draw(&mut [&mut ground]);
     let wet = draw(&mut [&mut ground, &mut sides]);
-    // A place half way up the face in the middle, and one on the ground before the hole.
-    let seen = |place| camera.project(&stage, ASPECT, place).map(|[x, y]| [x * 240.0, y * 135.0]).unwrap();
+    // A position half way up the face in the middle, and one on the ground before the hole.
+    let seen = |position| camera.project(&stage, ASPECT, position).map(|[x, y]| [x * 240.0, y * 135.0]).unwrap();
     let [x, y] = seen([8.0, 0.0, 0.5]);
     let [red, _, blue, _] = wet.pixel(x as u32, y as u32);
     assert!(blue > red.saturating_add(30) && wet.pixel(x as u32, y as u32) != dry.pixel(x as u32, y as u32));

@@ -7,7 +7,6 @@ use corpuscle_model::{GpuModel, Model, ModelError};
 use corpuscle_processes::Processes;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
-use std::sync::{PoisonError, RwLock};
 use std::time::Instant;
 
 /// A rate measured on this machine.
@@ -78,22 +77,6 @@ pub struct BenchOptions {
     pub passes: bool,
     /// The processes that share floods by scheme voronoi, and dew.
     pub processes: Processes,
-}
-
-static ADDED: RwLock<Vec<Bench>> = RwLock::new(Vec::new());
-
-/// Registers a bench, in this process. Nothing changes where one of its name exists.
-pub fn register_bench(bench: Bench) {
-    if benches().iter().all(|known| known.name != bench.name) {
-        ADDED.write().unwrap_or_else(PoisonError::into_inner).push(bench);
-    }
-}
-
-/// All benches.
-pub fn benches() -> Vec<Bench> {
-    use crate::{dew, flood, gas, gpu_copy};
-    let added = ADDED.read().unwrap_or_else(PoisonError::into_inner);
-    [flood::bench::BENCHES, gas::bench::BENCHES, dew::bench::BENCHES, gpu_copy::BENCHES, &added].concat()
 }
 
 /// A model that takes steps.

@@ -11,8 +11,14 @@ mod flood;
 mod gas;
 mod gpu_copy;
 mod missed;
+mod options;
+mod registry;
+mod row;
 
-pub use bench::{Bench, BenchOptions, PassTime, Rate, benches, register_bench};
-pub use case::{Case, Options, Row, cases, register_case};
+pub use bench::{Bench, BenchOptions, PassTime, Rate};
+pub use case::Case;
 pub use corpuscle_flood::FloodModel;
 pub use flood::bench::{BenchWater, bench_water};
+pub use options::Options;
+pub use registry::{benches, cases, register_bench, register_case};
+pub use row::Row;

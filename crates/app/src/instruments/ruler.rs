@@ -39,7 +39,7 @@ impl Ruler {
         }
         let Some(ends) = &mut self.ends else { return };
         for (end, name) in ends.iter_mut().zip(NAMES) {
-            let Some(at) = over.place(*end) else { continue };
+            let Some(at) = over.position(*end) else { continue };
             let grip = Rect::from_center_size(at, Vec2::splat(GRIP)).intersect(over.rect);
             let response = ui.interact(grip, ui.scope_id().with(name), Sense::drag()).on_hover_text("Drag");
             response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, name));
@@ -53,7 +53,7 @@ impl Ruler {
 
     fn paint(&self, over: &Over<'_>, unit: &str) {
         let (Some(ends), Some(length)) = (self.ends, self.length()) else { return };
-        let [Some(from), Some(to)] = ends.map(|end| over.place(end)) else { return };
+        let [Some(from), Some(to)] = ends.map(|end| over.position(end)) else { return };
         let stroke = Stroke::new(2.2, COLOUR);
         over.painter.line_segment([from, to], stroke);
         let along = (to - from).normalized();

@@ -1,12 +1,7 @@
 // What the toolkit draws (letters, grounds, lines, images), as triangles in points.
+#import declared
 
-struct Window {
-    // Width and height, points.
-    size: vec2f,
-    unused: vec2f,
-}
-
-@group(0) @binding(0) var<uniform> window: Window;
+@group(0) @binding(0) var<uniform> window: WindowSize;
 @group(1) @binding(0) var image: texture_2d<f32>;
 @group(1) @binding(1) var image_sampler: sampler;
 
@@ -17,9 +12,9 @@ struct Corner {
 }
 
 @vertex
-fn vertex(@location(0) place: vec2f, @location(1) uv: vec2f, @location(2) colour: u32) -> Corner {
-    let part = 2.0 * place / window.size - 1.0;
-    return Corner(vec4f(part.x, -part.y, 0.0, 1.0), uv, unpack4x8unorm(colour));
+fn vertex(vertex: MeshVertex) -> Corner {
+    let part = 2.0 * vertex.position / window.size - 1.0;
+    return Corner(vec4f(part.x, -part.y, 0.0, 1.0), vertex.uv, unpack4x8unorm(vertex.colour));
 }
 
 // Letters stand on whole pixels, and their images are as large as they are shown: nothing is to be filtered.

@@ -5,12 +5,14 @@
 //! shader that does what is wanted alone. On a GPU nothing of this is used.
 
 mod pipelines;
+mod shared;
 
 use corpuscle::gpu::{Gpu, GpuKind, wgpu};
-use egui::epaint::{ClippedShape, ImageData, ImageDelta, Primitive, Vertex};
+use egui::epaint::{ClippedShape, ImageData, ImageDelta, Primitive};
 use egui::{Context, FullOutput, PaintCallbackInfo, Rect, Shape, TextureId};
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait};
 use pipelines::{Image, Pipelines};
+use shared::MeshVertex;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -56,7 +58,7 @@ struct Part {
 /// Buffers of a picture's triangles: vertices, indices, and the parts.
 #[derive(Default)]
 struct Gathered {
-    vertices: Vec<Vertex>,
+    vertices: Vec<MeshVertex>,
     indices: Vec<u32>,
     /// Parts in a row, and what others draw after them.
     runs: Vec<(Vec<Part>, Option<ClippedShape>)>,
@@ -98,10 +100,10 @@ impl Meshes {
         }
         let Some(image) = self.images.get(&id) else { return };
         let [x, y] = change.pos.unwrap_or_default().map(|along| along as u32);
-        let place =
+        let part =
             wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x, y, z: 0 }, ..image.texture.as_image_copy() };
         let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
-        self.gpu.queue.write_texture(place, bytemuck::cast_slice(&pixels.pixels), rows, size);
+        self.gpu.queue.write_texture(part, bytemuck::cast_slice(&pixels.pixels), rows, size);
     }
 
     /// The triangles of shapes, and between them what others draw.
@@ -144,7 +146,7 @@ impl Meshes {
                 first_vertex: gathered.vertices.len() as i32,
             });
             gathered.indices.extend(&mesh.indices);
-            gathered.vertices.extend(&mesh.vertices);
+            gathered.vertices.extend(mesh.vertices.iter().map(MeshVertex::from));
         }
     }
 }

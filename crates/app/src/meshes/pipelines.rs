@@ -1,11 +1,9 @@
 //! Pipelines that draw the window's triangles on the device.
 
-use corpuscle::gpu::{Gpu, GroupLayout, wgpu};
+use super::shared::{MeshVertex, WindowSize, shader};
+use corpuscle::gpu::{Gpu, GroupLayout, SharedStruct, wgpu};
 use egui::TextureFilter;
-use egui::epaint::Vertex;
 use std::sync::Arc;
-
-const SHADER: &str = include_str!("meshes.wgsl");
 
 /// The shaders for letters and for images, and what they take.
 pub(super) struct Pipelines {
@@ -24,12 +22,13 @@ pub(super) struct Image {
 
 impl Pipelines {
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        let shader = shader();
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("meshes"),
-            source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+            source: wgpu::ShaderSource::Wgsl(shader.as_str().into()),
         });
         let layout = |label, group| {
-            GroupLayout::new(device, label, group, &[SHADER]).expect("the shader is valid, as a test says")
+            GroupLayout::new(device, label, group, &[&shader]).expect("the shader is valid, as a test says")
         };
         let (window, image) = (layout("size of the window", 0), layout("image", 1));
         let pipeline = |entry| pipeline(device, format, &module, entry, [window.layout(), image.layout()]);
@@ -73,8 +72,8 @@ impl Pipelines {
     }
 
     /// The size of the window, points, as the shader takes it.
-    pub fn window(&self, gpu: &Gpu, [width, height]: [f32; 2]) -> wgpu::BindGroup {
-        let size = [width, height, 0.0, 0.0];
+    pub fn window(&self, gpu: &Gpu, size: [f32; 2]) -> wgpu::BindGroup {
+        let size = WindowSize { size, unused: [0.0; 2] };
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("size of the window"),
             size: size_of_val(&size) as u64,
@@ -99,6 +98,7 @@ fn pipeline(
         bind_group_layouts: &layouts.map(Some),
         immediate_size: 0,
     });
+    let corner = MeshVertex::layout();
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("meshes"),
         layout: Some(&layout),
@@ -107,9 +107,9 @@ fn pipeline(
             entry_point: Some("vertex"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Vertex>() as u64,
+                array_stride: corner.size as u64,
                 step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Uint32],
+                attributes: &corner.vertex_attributes(),
             })],
         },
         primitive: wgpu::PrimitiveState::default(),

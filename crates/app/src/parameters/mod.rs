@@ -3,8 +3,9 @@
 mod slider;
 
 use crate::icons::{self, Icon};
+use corpuscle::models::parameters;
 use corpuscle::parameters::{
-    Builder, Change, Control, Current, Group, Parameter, as_number, largest, multiplied, parameters, set, value_at,
+    Builder, Change, Control, Current, Group, Parameter, as_number, largest, multiplied, set, value_at,
 };
 use corpuscle::scene::Scene;
 use egui::{Align, ComboBox, Layout, RichText, Ui, WidgetInfo};

@@ -132,7 +132,7 @@ impl Runner {
                 (running.playing, running.began) = (true, Instant::now());
             }
             Command::Pause => running.wait(),
-            Command::Probe(place) => running.probe = place,
+            Command::Probe(position) => running.probe = position,
             Command::Film(path) => self.film(&path),
             Command::EndFilm => self.end_film(),
             Command::Pace(pace) => running.pace.requested = pace,
@@ -343,7 +343,7 @@ impl Running {
         self.rate.note(self.subject.work());
         let (frame, paths, container) = self.subject.current();
         self.known = Arc::new(frame);
-        self.probed = self.probe.and_then(|place| self.subject.water_at(place));
+        self.probed = self.probe.and_then(|position| self.subject.water_at(position));
         Ok(Snapshot {
             number,
             particles: self.subject.particles(),

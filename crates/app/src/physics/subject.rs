@@ -4,7 +4,7 @@ use super::{Backend, Change};
 use crate::snapshot::Measures;
 use corpuscle::gpu::{DeviceParticles, Gpu, GpuKind};
 use corpuscle::model::{Container, Frame, GaugeColumn, Path as Trajectory};
-use corpuscle::output::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
+use corpuscle::output::{FrameFiles, GaugeTable, WallPositions, followed_paths};
 use corpuscle::scene::Scene;
 use corpuscle::{Choice, Cpu, Error, Sample, Simulation};
 use std::path::Path;
@@ -22,7 +22,7 @@ pub(super) struct Recorded {
     simulation: Simulation,
     files: FrameFiles,
     paths: Vec<Trajectory>,
-    walls: WallPlaces,
+    walls: WallPositions,
     gauges: GaugeTable,
     /// Number of the frame that is shown, and the frame.
     shown: (usize, Frame),
@@ -78,7 +78,7 @@ impl Subject {
         let shown = (0, files.read(0)?);
         let end = files.times().fold(0.0, f64::max);
         let gauges = GaugeTable::read(&folder.join("gauges.csv"))?;
-        let (paths, walls) = (followed_paths(folder)?, WallPlaces::read(folder)?);
+        let (paths, walls) = (followed_paths(folder)?, WallPositions::read(folder)?);
         let simulation = Simulation::open_to_restore(scene, folder)?;
         let time = shown.1.time;
         Ok(Self::Recorded(Box::new(Recorded { simulation, files, paths, walls, gauges, shown, time, end })))
@@ -150,7 +150,7 @@ impl Subject {
     /// Changes what is computed; a finished run stays as it is.
     pub fn change(&mut self, change: Change) -> Result<(), Error> {
         match self {
-            Self::Live(simulation, _) => change.make(simulation),
+            Self::Live(simulation, _) => simulation.make_change(change),
             Self::Recorded(_) => Ok(()),
         }
     }
@@ -206,9 +206,9 @@ impl Subject {
     }
 
     /// The water at a position of a flood that is computed.
-    pub fn water_at(&self, place: [f64; 2]) -> Option<Sample> {
+    pub fn water_at(&self, position: [f64; 2]) -> Option<Sample> {
         match self {
-            Self::Live(simulation, _) => simulation.water_at(place),
+            Self::Live(simulation, _) => simulation.water_at(position),
             Self::Recorded(_) => None,
         }
     }

@@ -70,7 +70,7 @@ impl SketchPainting {
         }
         for line in &sketch.lines {
             let [r, g, b] = line.colour;
-            let points: Option<Vec<Pos2>> = line.points.iter().map(|point| over.place(*point)).collect();
+            let points: Option<Vec<Pos2>> = line.points.iter().map(|point| over.position(*point)).collect();
             if let Some(points) = points.filter(|points| points.len() > 1) {
                 painter.add(Shape::line(points, Stroke::new(LINE, Color32::from_rgb(r, g, b))));
             }
@@ -119,12 +119,12 @@ impl Over<'_> {
         f64::from(self.rect.width()) / f64::from(self.rect.height())
     }
 
-    fn place(&self, point: [f64; 3]) -> Option<Pos2> {
-        crate::overlay::place(&self.sketch.shown, self.rect, point)
+    fn position(&self, point: [f64; 3]) -> Option<Pos2> {
+        crate::overlay::position(&self.sketch.shown, self.rect, point)
     }
 
     fn ground(&self, painter: &Painter, ground: &TextureHandle, corners: [[f64; 2]; 2]) {
-        if let [Some(one), Some(other)] = corners.map(|[x, y]| self.place([x, y, 0.0])) {
+        if let [Some(one), Some(other)] = corners.map(|[x, y]| self.position([x, y, 0.0])) {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(ground.id(), Rect::from_two_pos(one, other), whole, Color32::WHITE);
         }
@@ -165,7 +165,7 @@ impl Over<'_> {
         let Shown { stage, camera, .. } = &self.sketch.shown;
         let projection = camera.projection(stage, self.aspect());
         let seen = |disc: &corpuscle::pictures::Disc| {
-            let ball = projection.ball(disc.place, disc.radius)?;
+            let ball = projection.ball(disc.position, disc.radius)?;
             let at = self.at(ball.at);
             let radius = (ball.radius as f32 * self.rect.height()).max(LEAST_RADIUS);
             let [r, g, b] = disc.colour;

@@ -262,14 +262,14 @@ fn name(node: &Node) -> Option<String> {
 
 fn attributes(role: &'static str, name: String, node: &Node) -> Vec<(&'static str, String)> {
     let bounds = node.bounds().unwrap_or_default();
-    let place = format!(
+    let position = format!(
         "{STYLE}left:{:.0}px;top:{:.0}px;width:{:.0}px;height:{:.0}px",
         bounds.x0,
         bounds.y0,
         bounds.width(),
         bounds.height()
     );
-    let mut attributes = vec![("role", role.to_owned()), ("aria-label", name), ("style", place)];
+    let mut attributes = vec![("role", role.to_owned()), ("aria-label", name), ("style", position)];
     let numbers = [
         ("aria-valuenow", node.numeric_value()),
         ("aria-valuemin", node.min_numeric_value()),

@@ -1,7 +1,8 @@
 //! Handling of keys and of the controls of the strip.
 
 use super::open::QUALITIES;
-use super::{Panels, Source, Window};
+use super::{Panels, Window};
+use crate::Source;
 use crate::physics::{Command, default_pace};
 use crate::transport::Pressed;
 use egui::{Key, Ui};

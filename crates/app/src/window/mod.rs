@@ -7,9 +7,6 @@ mod open;
 mod panels;
 mod saving;
 mod side;
-mod source;
-
-pub use source::{Source, Start};
 
 use crate::background_device::BackgroundDevice;
 use crate::gallery::Gallery;
@@ -21,7 +18,7 @@ use crate::picture::Picture;
 use crate::plots::Plots;
 use crate::snapshot::{Snapshot, Wake};
 use crate::transport::PACES;
-use crate::{Screen, help, link, style};
+use crate::{Screen, Source, Start, help, link, style};
 use corpuscle::pictures::CameraOffset;
 use dropping::ChosenFiles;
 use egui::{Context, Frame, Margin, Panel, Ui};

@@ -1,6 +1,6 @@
 //! The scene that is open.
 
-use super::Source;
+use crate::Source;
 use crate::gas_controls::GasControls;
 use crate::icons::{self, Icon};
 use crate::instruments::Instruments;
@@ -127,10 +127,10 @@ impl Open {
         let painter = ui.painter_at(rect);
         let over = Over { shown, rect, painter: &painter, dark: ui.visuals().dark_mode };
         let below = |at: Pos2| match &self.terrain {
-            // Beside the terrain the nearest of its places is taken.
+            // Beside the terrain the nearest of its positions is taken.
             Some(terrain) => Spot::at(shown, rect, terrain, at)
                 .or_else(|| Some(Spot::within(terrain, self.picture.below(rect, at)?)))
-                .map(|spot| spot.place()),
+                .map(|spot| spot.position()),
             None => self.picture.below(rect, at),
         };
         ruler.ui(ui, &over, &below, unit);
@@ -188,10 +188,10 @@ impl Open {
     fn pick_at(&mut self, pointer: Pos2, rect: Rect, known: &Frame) {
         let Some(shown) = self.picture.shown() else { return };
         self.picked = Picked::at(shown, rect, known, pointer);
-        let place = self.picked.as_ref().and_then(|picked| picked.place(known));
-        self.spot = self.terrain.as_ref().and_then(|terrain| match place {
+        let position = self.picked.as_ref().and_then(|picked| picked.position(known));
+        self.spot = self.terrain.as_ref().and_then(|terrain| match position {
             // A click on water picks the position on the bed below it.
-            Some(place) => Some(Spot::under(terrain, place)),
+            Some(position) => Some(Spot::under(terrain, position)),
             None => Spot::at(shown, rect, terrain, pointer),
         });
         if let Some(picked) = &mut self.picked {

@@ -1,6 +1,7 @@
 //! Saving of stills, films and scenes.
 
-use super::{Source, Window};
+use super::Window;
+use crate::Source;
 use crate::files;
 use crate::physics::Command;
 use std::path::PathBuf;

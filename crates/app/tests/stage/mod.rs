@@ -180,7 +180,7 @@ impl Stage {
         self.harness.get_by_label("Picture of the scene").rect().size().into()
     }
 
-    /// Clicks on a place of the picture, in parts of its width and height.
+    /// Clicks on a position of the picture, in parts of its width and height.
     pub fn click_picture(&mut self, part: [f32; 2]) {
         let rect = self.harness.get_by_label("Picture of the scene").rect();
         let at = rect.min + vec2(part[0], part[1]) * rect.size();

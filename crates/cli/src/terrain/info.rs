@@ -83,7 +83,7 @@ impl Info {
 
     /// The description as text.
     fn text(&self) -> String {
-        let listed = |numbers: &[f64]| numbers.iter().map(|value| place(*value)).collect::<Vec<_>>().join(", ");
+        let listed = |numbers: &[f64]| numbers.iter().map(|value| coordinate(*value)).collect::<Vec<_>>().join(", ");
         let ([dx, dy], [width, height], [dx_m, dy_m]) =
             (self.cell.map(number), self.size_m.map(number), self.cell_m.map(number));
         let mut lines = vec![
@@ -107,7 +107,7 @@ impl Info {
 }
 
 /// A coordinate to a millimetre, or a ten-millionth of a degree.
-fn place(value: f64) -> String {
+fn coordinate(value: f64) -> String {
     let text = if value.abs() <= 360.0 { format!("{value:.7}") } else { format!("{value:.3}") };
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

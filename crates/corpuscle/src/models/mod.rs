@@ -7,7 +7,7 @@ pub(crate) mod flood;
 pub(crate) mod gas;
 
 use crate::Error;
-use crate::parameters::Builder;
+use crate::parameters::{Builder, Control};
 #[cfg(feature = "pictures")]
 use crate::pictures::{DrawContext, Particles, PictureSettings, Scenery, Sketcher, Subject};
 #[cfg(feature = "pictures")]
@@ -19,6 +19,7 @@ use corpuscle_scene::{Scene, SceneKind};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::{Arc, PoisonError, RwLock};
+use toml::Table;
 
 /// Unit of work of models that step.
 const PARTICLE_STEPS: &str = "particle-steps";
@@ -182,6 +183,7 @@ pub trait ModelKind: Send + Sync {
     }
 
     /// True where pictures show particles in the memory of a GPU that takes the steps.
+    #[cfg(feature = "pictures")]
     fn shows_particles(&self, _scene: &Scene) -> bool {
         true
     }
@@ -216,4 +218,23 @@ pub fn of(scene: &Scene) -> Result<&'static dyn ModelKind, ModelError> {
     let added = ADDED.read().unwrap_or_else(PoisonError::into_inner);
     let found = OWN.iter().chain(&*added).find(|kind| kind.scene().name == name).copied();
     found.ok_or_else(|| ModelError::Setup(format!("there is no model `{name}` in this program")))
+}
+
+/// The parameters of a scene as written; `now` is the scene with the changes that have been applied.
+///
+/// # Errors
+/// [`ModelError::Setup`] where the scene is of a model that was not registered.
+pub fn parameters(scene: &Scene, now: &Scene, document: Table) -> Result<Builder, ModelError> {
+    let mut builder = Builder { document, groups: Vec::new(), left_out: Vec::new() };
+    of(scene)?.parameters(&mut builder, scene, now);
+    let whole = Control::Whole([0.0, 99.0]);
+    builder.group("Run").scaled("run.until_s", "End", "s", "When the scene ends").add(
+        "seed",
+        "Seed",
+        "",
+        "Start value of all random numbers",
+        whole,
+    );
+    builder.groups.retain(|group| !group.parameters.is_empty());
+    Ok(builder)
 }

@@ -2,12 +2,11 @@
 
 mod values;
 
-use crate::{Error, LiveChange, Simulation};
-use corpuscle_model::ModelError;
+use crate::LiveChange;
 use corpuscle_scene::{Scene, Series};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
-use values::place_at;
+use values::slot_at;
 pub use values::{as_number, largest, multiplied, set, size, size_as_written, value_at};
 
 /// A change of a running scene.
@@ -22,19 +21,6 @@ pub enum Change {
         /// Position in model coordinates.
         at: [f64; 2],
     },
-}
-
-impl Change {
-    /// Makes the change.
-    ///
-    /// # Errors
-    /// Those of [`Simulation::change_live`] and [`Simulation::place_gauge`].
-    pub fn make(self, simulation: &mut Simulation) -> Result<(), Error> {
-        match self {
-            Self::Model(changes) => changes.into_iter().try_for_each(|change| simulation.change_live(change)),
-            Self::Gauge { name, at } => simulation.place_gauge(&name, at),
-        }
-    }
 }
 
 /// A change of a model that runs.
@@ -206,8 +192,8 @@ impl Builder {
 
     /// Declares the default of a key that the scene may leave out.
     pub fn or(&mut self, path: &str, value: f64) -> &mut Self {
-        if let Some(place) = place_at(&mut self.document, path) {
-            *place = Value::Float(value);
+        if let Some(slot) = slot_at(&mut self.document, path) {
+            *slot = Value::Float(value);
             self.left_out.push(path.into());
         }
         self
@@ -256,23 +242,4 @@ fn numbers_below(value: &Value, path: &str, found: &mut Vec<(String, bool, f64)>
         }
         _ => {}
     }
-}
-
-/// The parameters of a scene as written; `now` is the scene with the changes that have been applied.
-///
-/// # Errors
-/// [`ModelError::Setup`] where the scene is of a model that was not registered.
-pub fn parameters(scene: &Scene, now: &Scene, document: Table) -> Result<Builder, ModelError> {
-    let mut builder = Builder { document, groups: Vec::new(), left_out: Vec::new() };
-    crate::models::of(scene)?.parameters(&mut builder, scene, now);
-    let whole = Control::Whole([0.0, 99.0]);
-    builder.group("Run").scaled("run.until_s", "End", "s", "When the scene ends").add(
-        "seed",
-        "Seed",
-        "",
-        "Start value of all random numbers",
-        whole,
-    );
-    builder.groups.retain(|group| !group.parameters.is_empty());
-    Ok(builder)
 }

@@ -40,7 +40,7 @@ pub fn value_at<'a>(document: &'a Table, path: &str) -> Option<&'a Value> {
 }
 
 /// Inserts the tables down to a value that the document leaves out; none where it has the value, or cannot have it.
-pub(super) fn place_at<'a>(document: &'a mut Table, path: &str) -> Option<&'a mut Value> {
+pub(super) fn slot_at<'a>(document: &'a mut Table, path: &str) -> Option<&'a mut Value> {
     if value_at(document, path).is_some() {
         return None;
     }

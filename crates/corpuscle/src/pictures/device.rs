@@ -1,57 +1,9 @@
 //! Pictures of a model that steps on the GPU that draws: its particles stay there.
 
 use super::{Moment, Pictures};
-use crate::{Error, Simulation, models};
+use crate::Error;
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
-use corpuscle_model::{AdvanceObserver, Frame, Glance, GpuModel, Model};
-use std::sync::atomic::AtomicBool;
-
-impl Simulation {
-    /// The GPU that takes the steps, if one does.
-    pub(super) fn stepping_gpu(&self) -> Option<Gpu> {
-        gpu_of(self.model())
-    }
-
-    /// The particles in GPU memory, where the model steps on the device that draws it; else none.
-    ///
-    /// # Errors
-    /// [`Error::Model`] where the device has too little memory.
-    pub fn seen_on(&self, gpu: &Gpu) -> Result<Option<DeviceParticles>, Error> {
-        if self.is_seen_on(gpu) && self.shows_particles() { particles_of(self.model()) } else { Ok(None) }
-    }
-
-    /// True where the model steps on this device and can be drawn there without reading its particles back.
-    pub fn is_seen_on(&self, gpu: &Gpu) -> bool {
-        self.stepping_gpu().is_some_and(|device| device.is_same(gpu))
-    }
-
-    /// True where pictures show particles in GPU memory.
-    fn shows_particles(&self) -> bool {
-        models::of(self.scene()).is_ok_and(|kind| kind.shows_particles(self.scene()))
-    }
-
-    /// Goes on as [`Model::advance_with`] does. Of a model that can be drawn where it steps ([`Simulation::is_seen_on`]) `show` is given a
-    /// glance from the time `first`, s, on, and returns when the next is due, s (a time that has passed stands for the end of the next
-    /// step); particles come back only at the end.
-    ///
-    /// # Errors
-    /// [`Error::Model`] where the model breaks down, or its device is lost.
-    pub fn advance_shown(
-        &mut self,
-        time: f64,
-        stop: &AtomicBool,
-        observer: &mut dyn AdvanceObserver,
-        first: f64,
-        show: &mut dyn FnMut(Glance) -> f64,
-    ) -> Result<(), Error> {
-        let with_particles = self.shows_particles();
-        let model = self.model_mut();
-        if let Some(model) = model.on_gpu_mut() {
-            return Ok(model.advance_shown(time, stop, observer, (first, with_particles), show)?);
-        }
-        Ok(model.advance_with(time, stop, observer)?)
-    }
-}
+use corpuscle_model::{Frame, Glance, GpuModel, Model};
 
 impl Pictures {
     /// The picture of a model in its current state. Where it steps on the device that draws, its particles are drawn from its memory.
@@ -89,17 +41,20 @@ impl Pictures {
     }
 }
 
-fn gpu_of(model: &dyn Model) -> Option<Gpu> {
+/// The GPU that takes the steps of a model, if one does.
+pub(crate) fn gpu_of(model: &dyn Model) -> Option<Gpu> {
     model.on_gpu().and_then(GpuModel::gpu)
 }
 
-fn particles_of(model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
+/// The particles of a model in GPU memory, where it has them there.
+pub(crate) fn particles_of(model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
     Ok(model.on_gpu().map(GpuModel::particles_on_gpu).transpose()?.flatten())
 }
 
 #[cfg(all(test, feature = "gpu"))]
 mod tests {
     use super::*;
+    use crate::Simulation;
     use crate::pictures::{CameraOffset, GroundStyle, PictureSettings, Quality};
     use corpuscle_gpu::require_gpu;
     use corpuscle_scene::{Scene, builtin};

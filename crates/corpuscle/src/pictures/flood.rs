@@ -13,8 +13,8 @@ use corpuscle_gpu::{DeviceParticles, Gpu, PassTiming};
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{
     Axes, BallStyle, Balls, BallsOfDevice, ColourTable, DeviceWater, Drawable, Droplet, Floor, Fluid, FluidStyle,
-    HeightField, Key, KeyPlace, Lens, Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, ValueOfDevice, Water,
-    WaterSides, natural_colours,
+    HeightField, Key, KeyPosition, Lens, Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, ValueOfDevice,
+    Water, WaterSides, natural_colours,
 };
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
@@ -219,7 +219,7 @@ impl FloodPicture {
         } else {
             let water = &mut self.water;
             let droplets: Vec<Droplet> =
-                sets.iter().flat_map(|set| water.droplets(time, set, |place| field.slope_at(place))).collect();
+                sets.iter().flat_map(|set| water.droplets(time, set, |position| field.slope_at(position))).collect();
             self.sides.fill(gpu, field, &droplets);
             fluid.fill(gpu, droplets);
         }
@@ -263,7 +263,7 @@ impl FloodPicture {
             scale_bar: Some("m".into()),
             north: is_plan || context.north,
             axes: context.shows_all().then(axes),
-            key_place: if is_plan { KeyPlace::Below } else { KeyPlace::Corner },
+            key_position: if is_plan { KeyPosition::Below } else { KeyPosition::Corner },
             ..Overlay::default()
         }
     }
@@ -293,7 +293,7 @@ pub(super) fn sampled(ground: &Ground, nodes: [usize; 2]) -> HeightField {
         HeightField { origin: [bounds.x_min, bounds.y_min], cell, nodes, heights: ground.heights_on(nodes) };
     if ground.has_holes() {
         for index in 0..field.heights.len() {
-            if !has_data(ground, field.place(index)) {
+            if !has_data(ground, field.position(index)) {
                 field.heights[index] = f32::NAN;
             }
         }
@@ -335,7 +335,7 @@ fn mean_radius(sets: &[ParticleSet]) -> Option<f64> {
 /// Particles with exaggerated heights.
 fn raised(set: &ParticleSet, times: f64) -> ParticleSet {
     let mut set = set.clone();
-    set.position.iter_mut().for_each(|place| place[2] *= times);
+    set.position.iter_mut().for_each(|position| position[2] *= times);
     set
 }
 

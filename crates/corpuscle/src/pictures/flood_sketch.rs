@@ -52,7 +52,7 @@ impl FloodSketch {
     fn discs(&self, set: &ParticleSet) -> Vec<Disc> {
         let depths = depths(set);
         let disc = |at: usize| Disc {
-            place: set.position[at],
+            position: set.position[at],
             radius: RADIUS * set.radius[at],
             colour: self.blues.colour(depths.get(at).copied().unwrap_or(0.0) as f32),
             has_rim: false,
@@ -100,9 +100,9 @@ fn put(image: &mut Image, [column, row]: [i64; 2], shade: f64) {
     }
 }
 
-/// The node nearest to a place.
-fn node(field: &HeightField, place: [f64; 2]) -> [i64; 2] {
-    [0, 1].map(|axis| ((place[axis] - field.origin[axis]) / field.cell[axis]).round() as i64)
+/// The node nearest to a position.
+fn node(field: &HeightField, position: [f64; 2]) -> [i64; 2] {
+    [0, 1].map(|axis| ((position[axis] - field.origin[axis]) / field.cell[axis]).round() as i64)
 }
 
 /// Paints an obstacle from above, with its outline.
@@ -145,8 +145,8 @@ fn shaded(field: &HeightField) -> Image {
     let [columns, rows] = field.nodes;
     for (pixel, rgba) in image.rgba.chunks_exact_mut(4).enumerate() {
         let (column, row) = (pixel % columns, rows - 1 - pixel / columns);
-        let place = [(0, column), (1, row)].map(|(axis, at)| field.origin[axis] + field.cell[axis] * at as f64);
-        let [east, north] = field.slope_at(place);
+        let position = [(0, column), (1, row)].map(|(axis, at)| field.origin[axis] + field.cell[axis] * at as f64);
+        let [east, north] = field.slope_at(position);
         let facing = (LIGHT[2] - LIGHT[0] * east - LIGHT[1] * north) / (1.0 + east * east + north * north).sqrt();
         let shade = 0.45 + 0.75 * facing.max(0.0);
         rgba[..3].iter_mut().for_each(|channel| *channel = (f64::from(*channel) * shade).min(255.0) as u8);

@@ -127,20 +127,21 @@ impl DepthGrid {
         else {
             return;
         };
-        for ((place, radius), depth) in set.position.iter().zip(&set.radius).zip(depths) {
+        for ((position, radius), depth) in set.position.iter().zip(&set.radius).zip(depths) {
             if *depth > 0.0 {
-                self.add_particle([place[0], place[1]], REACH * 2.0 * radius, *depth as f32);
+                self.add_particle([position[0], position[1]], REACH * 2.0 * radius, *depth as f32);
             }
         }
     }
 
-    fn add_particle(&mut self, place: [f64; 2], reach: f64, depth: f32) {
+    fn add_particle(&mut self, position: [f64; 2], reach: f64, depth: f32) {
         let pixels = |axis: usize| {
-            let at = |end: f64| (place[axis] + end - self.origin[axis]) / self.pixel[axis];
+            let at = |end: f64| (position[axis] + end - self.origin[axis]) / self.pixel[axis];
             (at(-reach).max(0.0) as usize)..(at(reach).ceil().max(0.0) as usize).min(self.size[axis])
         };
-        let away =
-            |axis: usize, at: usize| (self.origin[axis] + (at as f64 + 0.5) * self.pixel[axis] - place[axis]) / reach;
+        let away = |axis: usize, at: usize| {
+            (self.origin[axis] + (at as f64 + 0.5) * self.pixel[axis] - position[axis]) / reach
+        };
         for row in pixels(1) {
             let north = away(1, row).powi(2);
             for column in pixels(0) {

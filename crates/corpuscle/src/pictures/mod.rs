@@ -22,18 +22,18 @@ mod times;
 mod viewpoint;
 mod water_colour;
 
-use crate::{Error, Simulation, models};
+use crate::Error;
 pub use camera_offset::CameraOffset;
 use corpuscle_drawing::svg::Figure;
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
 pub use corpuscle_model::Glance;
 use corpuscle_model::{Container, Frame, Path};
 use corpuscle_render::{
-    BallPainter, Camera, CapPainter, Drawable, FluidPainter, Light, Overlay, RenderError, Renderer, Stage, Target,
-    TubePainter,
+    BallPainter, Camera, CapPainter, Drawable, FluidPainter, Light, Overlay, Renderer, Stage, Target, TubePainter,
 };
 use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
+pub(crate) use device::{gpu_of, particles_of};
 use flood::FloodPicture;
 pub use ground_style::GroundStyle;
 pub use particles::Particles;
@@ -138,32 +138,9 @@ pub struct DrawContext {
 }
 
 impl Pictures {
-    /// Opens pictures of a scene: on the GPU that takes the steps, else on the best device.
-    ///
-    /// # Errors
-    /// [`Error::Render`] where there is no device, or the pictures are larger than it can hold.
-    pub fn open(simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
-        let gpu = simulation.stepping_gpu().map_or_else(Gpu::open, Ok).map_err(RenderError::from)?;
-        Self::open_on(&gpu, simulation, settings)
-    }
-
-    /// The same on a device that is open already.
-    ///
-    /// # Errors
-    /// [`Error::Render`] where the pictures are larger than it can hold.
-    pub fn open_on(gpu: &Gpu, simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
-        Self::open_scenery(gpu, &Scenery::of(simulation), settings)
-    }
-
-    /// The same where the scene is computed elsewhere.
-    ///
-    /// # Errors
-    /// [`Error::Render`] where the pictures are larger than the device can hold.
-    pub fn open_scenery(gpu: &Gpu, scenery: &Scenery, settings: PictureSettings) -> Result<Self, Error> {
-        let Scenery { scene, terrain, .. } = scenery;
-        let context = DrawContext::new(gpu, &settings, terrain.as_deref())?;
-        let subject = models::of(scene)?.pictures(&context, scenery, &settings)?;
-        Ok(Self { context, title: scene.title.clone(), subject })
+    /// Pictures with a title, by a model's own drawing.
+    pub(crate) fn new(context: DrawContext, title: String, subject: Box<dyn Subject>) -> Self {
+        Self { context, title, subject }
     }
 
     /// Opens pictures of a flood without scene, on a device that is open already.
@@ -173,7 +150,7 @@ impl Pictures {
     pub fn of_flood(gpu: &Gpu, flood: &Flood, ground: &Terrain, settings: PictureSettings) -> Result<Self, Error> {
         let context = DrawContext::new(gpu, &settings, Some(ground))?;
         let flood = FloodPicture::new(&context, flood, ground, flood::drawn_ground(ground), &settings)?;
-        Ok(Self { context, title: String::new(), subject: Box::new(flood) })
+        Ok(Self::new(context, String::new(), Box::new(flood)))
     }
 
     /// The device that draws, by its name.
@@ -208,7 +185,7 @@ impl Pictures {
 }
 
 impl DrawContext {
-    fn new(gpu: &Gpu, settings: &PictureSettings, ground: Option<&Terrain>) -> Result<Self, Error> {
+    pub(crate) fn new(gpu: &Gpu, settings: &PictureSettings, ground: Option<&Terrain>) -> Result<Self, Error> {
         let renderer = Renderer::new(gpu);
         let target = Target::new(gpu, settings.size, settings.samples)?.without_background(settings.transparent);
         let viewpoints = settings.viewpoints.iter().copied();

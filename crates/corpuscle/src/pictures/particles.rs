@@ -32,9 +32,7 @@ pub struct Particles {
 impl Particles {
     /// The pictures of a scene.
     pub fn new(scenery: &Scenery) -> Self {
-        let scene = scenery.scene();
-        let has_si_units = crate::models::of(scene).is_ok_and(|kind| kind.has_si_units(scene));
-        Self { has_si_units, stage: None, floor: None }
+        Self { has_si_units: scenery.has_si_units, stage: None, floor: None }
     }
 
     fn overlay(&self, title: &str, frame: &Frame, stage: &Stage) -> Overlay {
@@ -91,9 +89,9 @@ impl Sketcher for Particles {
         let is_flat = stage.from.z == stage.to.z;
         let camera = if is_flat { seen.plan(&stage, OWN_VIEW.margins) } else { seen.orbit(&stage, &OWN_VIEW) };
         let discs = |(set, colour): (&ParticleSet, &[u8; 3])| {
-            let places = set.position.iter().zip(&set.radius);
-            places
-                .map(|(place, radius)| Disc { place: *place, radius: *radius, colour: *colour, has_rim: true })
+            let positions = set.position.iter().zip(&set.radius);
+            positions
+                .map(|(position, radius)| Disc { position: *position, radius: *radius, colour: *colour, has_rim: true })
                 .collect::<Vec<_>>()
         };
         let discs = moment.frame.sets.iter().zip(COLOURS.iter().cycle()).flat_map(discs).collect();

@@ -1,8 +1,7 @@
 //! Pictures as discs, lines and a map, for a caller without a device that draws: it paints them itself.
 
 use super::viewpoint::OwnView;
-use super::{CameraOffset, Moment, Scenery, Shown};
-use crate::{Error, models};
+use super::{CameraOffset, Moment, Shown};
 use corpuscle_gpu::Image;
 use corpuscle_render::{Camera, Overlay, Stage};
 use glam::DVec3;
@@ -11,7 +10,7 @@ use glam::DVec3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
     /// Its middle, m.
-    pub place: [f64; 3],
+    pub position: [f64; 3],
     /// Its radius, m.
     pub radius: f64,
     /// Its colour.
@@ -120,13 +119,9 @@ pub struct Sketches {
 }
 
 impl Sketches {
-    /// Sketches of a scene.
-    ///
-    /// # Errors
-    /// Where a file that the scene names cannot be used.
-    pub fn open(scenery: &Scenery) -> Result<Self, Error> {
-        let sketcher = models::of(&scenery.scene)?.sketcher(scenery)?;
-        Ok(Self { title: scenery.scene.title.clone(), sketcher })
+    /// Sketches with a title, by a model's own drawing.
+    pub(crate) fn new(title: String, sketcher: Box<dyn Sketcher>) -> Self {
+        Self { title, sketcher }
     }
 
     /// The sketch of a moment.

@@ -1,19 +1,17 @@
 //! One member of an ensemble: its run, and its files.
 
 mod maps;
-mod record;
 
 pub(crate) use maps::{axes, read_map};
-pub use record::{Failure, Record};
 
-use crate::{EnsembleError, Folder, Source};
+use crate::record::{Axis, Described};
+use crate::{EnsembleError, Failure, Folder, Record, Source};
 use corpuscle::model::Map;
 use corpuscle::output::{GaugeTable, Status, Summary};
 use corpuscle::terrain::MapGrid;
 use corpuscle::{Error, Progress, Simulation, Sink};
 use corpuscle_atomic_file::{clear_unfinished, write_whole};
 use rayon::ThreadPoolBuilder;
-use record::{Axis, Described};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -53,27 +51,27 @@ pub(crate) fn compute(
     stop: &AtomicBool,
     on_progress: &mut (dyn FnMut(&Progress) + Send),
 ) -> Result<Option<Record>, EnsembleError> {
-    let place = folder.member(number);
-    fs::create_dir_all(&place).map_err(EnsembleError::file(&place))?;
-    clear_unfinished(&place).map_err(EnsembleError::file(&place))?;
+    let member_folder = folder.member(number);
+    fs::create_dir_all(&member_folder).map_err(EnsembleError::file(&member_folder))?;
+    clear_unfinished(&member_folder).map_err(EnsembleError::file(&member_folder))?;
     let attempts = folder.record(number)?.map_or(0, |record| record.attempts) + 1;
     let start = Instant::now();
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| EnsembleError::file(&place)(io::Error::other(error)))?;
+    let pool = pool.map_err(|error| EnsembleError::file(&member_folder)(io::Error::other(error)))?;
     let changes = folder.plan().assignments(number);
     let simulated = catch_unwind(AssertUnwindSafe(|| pool.install(|| simulate(source, &changes, stop, on_progress))));
     let mut record = Record::new(number, folder.plan().changes(number), attempts);
     match simulated {
         Ok(Ok(None)) => return Ok(None),
         Ok(Ok(Some(computed))) => {
-            write_files(&place, &computed)?;
+            write_files(&member_folder, &computed)?;
             describe(&mut record, computed);
         }
         Ok(Err(error)) => record.fail(Failure::of(&error)),
         Err(panic) => record.fail(Failure::of_panic(&*panic)),
     }
     record.wall_time_s = Some(start.elapsed().as_secs_f64());
-    record.write(&place)?;
+    record.write(&member_folder)?;
     Ok(Some(record))
 }
 
@@ -96,11 +94,11 @@ fn simulate(
     Ok(Some(Computed { summary, gauges, maps: model.maps(), grid }))
 }
 
-fn write_files(place: &Path, computed: &Computed) -> Result<(), EnsembleError> {
+fn write_files(member_folder: &Path, computed: &Computed) -> Result<(), EnsembleError> {
     if let Some(grid) = computed.grid.as_ref().filter(|_| !computed.maps.is_empty()) {
-        maps::write(place, &computed.maps, grid)?;
+        maps::write(member_folder, &computed.maps, grid)?;
     }
-    let path = place.join(GAUGES);
+    let path = member_folder.join(GAUGES);
     write_whole(&path, |file| write_gauges(file, &computed.gauges)).map_err(EnsembleError::file(&path))
 }
 

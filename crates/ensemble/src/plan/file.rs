@@ -2,8 +2,7 @@
 
 use super::Plan;
 use super::sample::{MOST_SOBOL_KEYS, MOST_SOBOL_MEMBERS, combinations, latin_hypercube, sobol};
-use crate::folder::Chosen;
-use crate::{EnsembleError, Source};
+use crate::{Chosen, EnsembleError, Source};
 use corpuscle::scene::{TOO_DEEP, builtin, read_text, too_deep};
 use serde::Deserialize;
 use serde_json::{Number, Value};
@@ -84,12 +83,12 @@ impl PlanFile {
     /// [`EnsembleError::Scene`] for a scene that is not as it must be.
     pub fn read(path: &Path) -> Result<Self, EnsembleError> {
         let text = read_text(path).map_err(|error| EnsembleError::plan(path, format!("cannot be read: {error}")))?;
-        let wrong_at = |place: Option<std::ops::Range<usize>>, what: &str| {
-            let line = place.map(|place| text[..place.start].matches('\n').count() + 1);
+        let wrong_at = |range: Option<std::ops::Range<usize>>, what: &str| {
+            let line = range.map(|range| text[..range.start].matches('\n').count() + 1);
             EnsembleError::Plan { path: path.to_owned(), line, what: what.to_owned() }
         };
-        if let Some(place) = too_deep(&text) {
-            return Err(wrong_at(Some(place), TOO_DEEP));
+        if let Some(range) = too_deep(&text) {
+            return Err(wrong_at(Some(range), TOO_DEEP));
         }
         let written: Written = toml::from_str(&text).map_err(|error| wrong_at(error.span(), error.message()))?;
         let folder = path.parent().unwrap_or(Path::new(""));

@@ -82,18 +82,18 @@ fn terrain(maker: &mut Maker<'_>) -> Terrain {
         }),
         1 => Terrain::RoughHills(RoughHills { extent, relief_m: c, hill_size_m: 15.0, roughness: 0.5 }),
         2 => Terrain::Plane(Plane { extent, slope_east: a, slope_north: b, height_m: c }),
-        3 => Terrain::Bump(Bump { extent, height_m: c, width_m: 12.0, at: maker.maybe(0.5, |maker| place(maker)) }),
+        3 => Terrain::Bump(Bump { extent, height_m: c, width_m: 12.0, at: maker.maybe(0.5, |maker| position(maker)) }),
         _ => Terrain::Bowl(Bowl { extent, depth_m: c + 0.1, radius_m: 20.0 }),
     }
 }
 
-fn place(maker: &mut Maker<'_>) -> [f64; 2] {
+fn position(maker: &mut Maker<'_>) -> [f64; 2] {
     [maker.between(0.05 * SIDE, 0.95 * SIDE), maker.between(0.05 * SIDE, 0.95 * SIDE)]
 }
 
 fn line(maker: &mut Maker<'_>) -> Vec<[f64; 2]> {
     let count = 2 + maker.random.below(3);
-    (0..count).map(|_| place(maker)).collect()
+    (0..count).map(|_| position(maker)).collect()
 }
 
 fn polygon(maker: &mut Maker<'_>) -> Vec<[f64; 2]> {
@@ -103,7 +103,7 @@ fn polygon(maker: &mut Maker<'_>) -> Vec<[f64; 2]> {
 }
 
 fn circle(maker: &mut Maker<'_>) -> Circle {
-    Circle { centre: place(maker), radius_m: maker.between(2.0, 8.0) }
+    Circle { centre: position(maker), radius_m: maker.between(2.0, 8.0) }
 }
 
 fn rating(maker: &mut Maker<'_>) -> Vec<[f64; 2]> {
@@ -150,7 +150,7 @@ fn flood(maker: &mut Maker<'_>, until: f64) -> Flood {
         water: maker.list(0.6, 3, |maker, number| water(maker, number)),
         inflow: maker.list(0.4, 2, |maker, number| {
             let is_line = maker.random.chance(0.5);
-            let (at, line) = (place(maker), line(maker));
+            let (at, line) = (position(maker), line(maker));
             Inflow {
                 name: format!("inflow {number}"),
                 at: (!is_line).then_some(at),
@@ -161,7 +161,7 @@ fn flood(maker: &mut Maker<'_>, until: f64) -> Flood {
         }),
         outflow: maker.list(0.2, 2, |maker, number| {
             let kind = maker.random.below(3);
-            let (at, line, polygon) = (place(maker), line(maker), polygon(maker));
+            let (at, line, polygon) = (position(maker), line(maker), polygon(maker));
             Outflow {
                 name: format!("outflow {number}"),
                 at: (kind == 0).then_some(at),
@@ -184,7 +184,7 @@ fn flood(maker: &mut Maker<'_>, until: f64) -> Flood {
         obstacle,
         gauge: maker.list(0.4, 2, |maker, number| Gauge {
             name: format!("gauge {number}"),
-            at: Some(place(maker)),
+            at: Some(position(maker)),
             lon_lat: None,
         }),
         section: maker.list(0.3, 1, |maker, number| Section { name: format!("section {number}"), line: line(maker) }),

@@ -264,8 +264,8 @@ fn overlap(frame: &Frame) -> Option<String> {
         .flat_map(|set| (0..set.len()).map(move |k| (set.id[k], set.position[k], set.radius[k])))
         .collect();
     for (number, (id, at, radius)) in balls.iter().enumerate() {
-        for (other, place, other_radius) in &balls[number + 1..] {
-            let distance = (0..3).map(|axis| (at[axis] - place[axis]).powi(2)).sum::<f64>().sqrt();
+        for (other, position, other_radius) in &balls[number + 1..] {
+            let distance = (0..3).map(|axis| (at[axis] - position[axis]).powi(2)).sum::<f64>().sqrt();
             let sum = radius + other_radius;
             if distance < sum * (1.0 - OVERLAP) {
                 return Some(format!("balls {id} and {other}: distance {distance}, radii {sum}"));

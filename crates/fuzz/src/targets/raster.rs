@@ -51,9 +51,9 @@ fn photo(bytes: &[u8]) -> Result<String, String> {
         let bounds = Bounds { x_min: 100.0, x_max: 340.0, y_min: 140.0, y_max: 300.0 };
         let terrain = Terrain::gridded(bounds, 20.0, |_, _| 0.0);
         let photo = Photo::open(path).map_err(words)?;
-        let place = photo.pixel(&terrain, [200.0, 200.0]);
+        let pixel = photo.pixel(&terrain, [200.0, 200.0]);
         let rgba = photo.read(Window::whole(photo.size())).map_err(words)?;
-        Ok(format!("{place:?} {}", rgba.len()))
+        Ok(format!("{pixel:?} {}", rgba.len()))
     })
 }
 
@@ -72,8 +72,8 @@ fn with_checksums(bytes: &[u8]) -> Vec<u8> {
         let Some(chunk) = bytes.get(at + 4..end) else { break };
         let mut sum = Crc::new();
         sum.update(chunk);
-        let Some(place) = bytes.get_mut(end..end + 4) else { break };
-        place.copy_from_slice(&sum.sum().to_be_bytes());
+        let Some(stored) = bytes.get_mut(end..end + 4) else { break };
+        stored.copy_from_slice(&sum.sum().to_be_bytes());
         at = end + 4;
     }
     bytes

@@ -26,8 +26,8 @@ pub fn write_extent(path: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result
     let wet: Vec<bool> = max_depth.iter().map(|depth| !depth.is_nan()).collect();
     let outlines = outlines(&wet, grid.columns, grid.rows);
     let with_system = has_system(terrain);
-    let place = |vertex: [usize; 2]| place_of(terrain, vertex, with_system);
-    let polygons: Vec<Value> = outlines.iter().map(|outline| polygon(outline, place)).collect();
+    let position = |vertex: [usize; 2]| position_of(terrain, vertex, with_system);
+    let polygons: Vec<Value> = outlines.iter().map(|outline| polygon(outline, position)).collect();
     let mut properties = json!({
         "name": "flooded extent",
         "area_m2": wet_area(terrain, &wet),
@@ -63,18 +63,21 @@ pub(crate) fn wet_area(terrain: &Terrain, wet: &[bool]) -> f64 {
     cells.map(|(index, _)| grid.cell_area(index % grid.columns, index / grid.columns)).sum()
 }
 
-fn polygon(outline: &Outline, place: impl Fn([usize; 2]) -> [f64; 2]) -> Value {
+fn polygon(outline: &Outline, position: impl Fn([usize; 2]) -> [f64; 2]) -> Value {
     let ring = |ring: &Vec<[usize; 2]>| -> Vec<[f64; 2]> {
         // GeoJSON repeats the first position at the end.
-        ring.iter().chain(ring.first()).map(|vertex| place(*vertex)).collect()
+        ring.iter().chain(ring.first()).map(|vertex| position(*vertex)).collect()
     };
     json!(std::iter::once(&outline.outer).chain(&outline.holes).map(ring).collect::<Vec<_>>())
 }
 
-/// The place of a corner of cells: longitude and latitude to the millimetre, or the terrain's own coordinates.
-fn place_of(terrain: &Terrain, [column, row]: [usize; 2], has_system: bool) -> [f64; 2] {
-    let place = &terrain.map_grid().georeference;
-    let own = [place.corner[0] + column as f64 * place.cell[0], place.corner[1] - row as f64 * place.cell[1]];
+/// The position of a corner of cells: longitude and latitude to the millimetre, or the terrain's own coordinates.
+fn position_of(terrain: &Terrain, [column, row]: [usize; 2], has_system: bool) -> [f64; 2] {
+    let georeference = &terrain.map_grid().georeference;
+    let own = [
+        georeference.corner[0] + column as f64 * georeference.cell[0],
+        georeference.corner[1] - row as f64 * georeference.cell[1],
+    ];
     match terrain.to_lon_lat(terrain.to_model(own)) {
         Ok(lon_lat) if has_system => lon_lat.map(|degrees| (degrees * 1e8).round() / 1e8),
         _ => own,

@@ -77,7 +77,7 @@ fn draw(polygons: &[Polygon], terrain: &Terrain) -> Result<Vec<bool>, String> {
     let mut sides = Vec::new();
     for (number, polygon) in polygons.iter().enumerate() {
         for ring in polygon {
-            let cells: Vec<[f64; 2]> = ring.iter().map(|place| grid.georeference.position(*place)).collect();
+            let cells: Vec<[f64; 2]> = ring.iter().map(|position| grid.georeference.position(*position)).collect();
             let is_far = |cell: &[f64; 2]| !cell.iter().all(|along| along.abs() <= FARTHEST);
             if let Some(corner) = cells.iter().position(is_far) {
                 let [x, y] = ring[corner];

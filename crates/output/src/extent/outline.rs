@@ -134,16 +134,16 @@ fn edges(wet: &[bool], columns: usize, rows: usize) -> Vec<u8> {
 fn simple_rings(ring: Vec<[usize; 2]>) -> Vec<Vec<[usize; 2]>> {
     let mut rings = Vec::new();
     let mut open: Vec<[usize; 2]> = Vec::with_capacity(ring.len());
-    let mut place: HashMap<[usize; 2], usize> = HashMap::with_capacity(ring.len());
+    let mut indices: HashMap<[usize; 2], usize> = HashMap::with_capacity(ring.len());
     for vertex in ring {
-        if let Some(&start) = place.get(&vertex) {
+        if let Some(&start) = indices.get(&vertex) {
             let closed = open.split_off(start);
             closed.iter().for_each(|vertex| {
-                place.remove(vertex);
+                indices.remove(vertex);
             });
             rings.push(closed);
         }
-        place.insert(vertex, open.len());
+        indices.insert(vertex, open.len());
         open.push(vertex);
     }
     rings.push(open);

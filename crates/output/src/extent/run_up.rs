@@ -1,7 +1,7 @@
 //! The run-up line: the limit of the wet cells, where the terrain continues beyond it.
 
 use super::outline::outlines;
-use super::{feature_collection, has_system, note_of_system, place_of};
+use super::{feature_collection, has_system, note_of_system, position_of};
 use crate::OutputError;
 use corpuscle_terrain::Terrain;
 use serde_json::json;
@@ -36,8 +36,8 @@ pub fn write_run_up(path: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result
         }
     }
     let with_system = has_system(terrain);
-    let place = |line: &Vec<Corner>| line.iter().map(|corner| place_of(terrain, *corner, with_system)).collect();
-    let coordinates: Vec<Vec<[f64; 2]>> = lines.iter().map(place).collect();
+    let position = |line: &Vec<Corner>| line.iter().map(|corner| position_of(terrain, *corner, with_system)).collect();
+    let coordinates: Vec<Vec<[f64; 2]>> = lines.iter().map(position).collect();
     let mut properties = json!({ "name": "run-up line", "highest_m": highest.filter(|height| height.is_finite()) });
     note_of_system(&mut properties, with_system);
     let collection = feature_collection(&properties, &json!({ "type": "MultiLineString", "coordinates": coordinates }));

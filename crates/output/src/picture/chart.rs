@@ -73,7 +73,7 @@ struct Axes {
 }
 
 impl Axes {
-    fn place(&self, [time, value]: [f64; 2]) -> [f64; 2] {
+    fn position(&self, [time, value]: [f64; 2]) -> [f64; 2] {
         let part = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
         let ([left, top], [right, bottom]) = (self.left_top, self.right_bottom);
         [left + part(time, self.span) * (right - left), bottom - part(value, self.range) * (bottom - top)]
@@ -152,7 +152,7 @@ impl Chart {
 fn draw_axes(svg: &mut Svg, axes: &Axes, time_named: bool) {
     let ([left, top], [right, bottom]) = (axes.left_top, axes.right_bottom);
     for value in ticks::multiples(axes.range[0], axes.range[1], axes.step) {
-        let [_, y] = axes.place([axes.span[0], value]);
+        let [_, y] = axes.position([axes.span[0], value]);
         svg.line([left, y], [right, y], if value == 0.0 { "axis" } else { "grid" });
         svg.text([left - 7.0, y + 4.0], Anchor::End, "number", &value_label(value, axes.step));
     }
@@ -161,7 +161,7 @@ fn draw_axes(svg: &mut Svg, axes: &Axes, time_named: bool) {
     let step = axes.unit.step(to - from, ((right - left) / 62.0).max(2.0) as usize);
     let times = ticks::multiples(from, to, step);
     for time in &times {
-        let [x, _] = axes.place([time * seconds, axes.range[0]]);
+        let [x, _] = axes.position([time * seconds, axes.range[0]]);
         svg.line([x, bottom], [x, bottom + 4.0], "axis");
         svg.text([x, bottom + 17.0], Anchor::Middle, "number", &ticks::label(*time, step));
     }
@@ -185,37 +185,37 @@ fn value_label(value: f64, step: f64) -> String {
 
 fn draw_series(svg: &mut Svg, axes: &Axes, series: &Series) {
     let points = thinned(&series.points);
-    let places = || points.iter().map(|point| axes.place(*point));
+    let positions = || points.iter().map(|point| axes.position(*point));
     if series.filled {
         for run in points.split(|point| !point[1].is_finite()).filter(|run| run.len() > 1) {
-            let base = |point: &[f64; 2]| axes.place([point[0], 0.0]);
-            let edge = run.iter().map(|point| axes.place(*point));
+            let base = |point: &[f64; 2]| axes.position([point[0], 0.0]);
+            let edge = run.iter().map(|point| axes.position(*point));
             let outline = std::iter::once(base(&run[0])).chain(edge).chain([base(&run[run.len() - 1])]);
             svg.path(outline, true, &format!("area a{}", series.colour % 6));
         }
     }
-    svg.path(places(), false, &format!("series s{}", series.colour % 6));
+    svg.path(positions(), false, &format!("series s{}", series.colour % 6));
     if let [only] = points.as_slice() {
-        svg.circle(axes.place(*only), 3.0, &format!("peak s{}", series.colour % 6));
+        svg.circle(axes.position(*only), 3.0, &format!("peak s{}", series.colour % 6));
     }
 }
 
 /// Draws a series up to a time, s, with a mark there, and the rest of it pale.
 fn draw_until(svg: &mut Svg, axes: &Axes, series: &Series, now: f64) {
     let class = format!("series s{}", series.colour % 6);
-    let places = thinned(&series.points).into_iter().map(|point| axes.place(point));
-    svg.styled_path(places, false, &class, "stroke-opacity:0.3");
+    let positions = thinned(&series.points).into_iter().map(|point| axes.position(point));
+    svg.styled_path(positions, false, &class, "stroke-opacity:0.3");
     let so_far = series.points[..series.points.partition_point(|point| point[0] <= now)].to_vec();
     let last = so_far.last().copied().filter(|point| point[1].is_finite());
     draw_series(svg, axes, &Series { points: so_far, ..series.clone() });
     if let Some(last) = last {
-        svg.circle(axes.place(last), 3.5, &format!("peak s{}", series.colour % 6));
+        svg.circle(axes.position(last), 3.5, &format!("peak s{}", series.colour % 6));
     }
 }
 
 fn draw_peak(svg: &mut Svg, axes: &Axes, series: &Series) {
     let Some(peak) = series.peak().filter(|peak| peak[1] > 0.0) else { return };
-    svg.circle(axes.place(peak), 3.2, &format!("peak s{}", series.colour % 6));
+    svg.circle(axes.position(peak), 3.2, &format!("peak s{}", series.colour % 6));
 }
 
 /// At most about [`MOST_POINTS`] points: of each stretch the first, lowest and highest, and the last of all.
@@ -309,7 +309,7 @@ mod tests {
     fn values_lie_between_the_axes() {
         let axes = chart(vec![[0.0, -1.0], [3600.0, 3.7]]).axes(40.0);
         assert!(axes.range[0] <= -1.0 && axes.range[1] >= 3.7);
-        assert_eq!(axes.place([0.0, axes.range[0]]), [LEFT, 160.0 - BOTTOM]);
-        assert_eq!(axes.place([3600.0, axes.range[1]]), [300.0 - RIGHT, 40.0]);
+        assert_eq!(axes.position([0.0, axes.range[0]]), [LEFT, 160.0 - BOTTOM]);
+        assert_eq!(axes.position([3600.0, axes.range[1]]), [300.0 - RIGHT, 40.0]);
     }
 }

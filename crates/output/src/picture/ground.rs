@@ -34,16 +34,16 @@ impl Ground {
     /// Samples a part of a terrain.
     pub(crate) fn of(terrain: &Terrain, window: &Window) -> Self {
         let grid = terrain.map_grid();
-        let place = &grid.georeference;
+        let georeference = &grid.georeference;
         let cell = grid.cell_size();
         let [columns, rows] = window.count.map(|count| count as f64);
         let corner = [
-            place.corner[0] + window.first[0] as f64 * place.cell[0],
-            place.corner[1] - window.first[1] as f64 * place.cell[1],
+            georeference.corner[0] + window.first[0] as f64 * georeference.cell[0],
+            georeference.corner[1] - window.first[1] as f64 * georeference.cell[1],
         ];
         let extent = [columns * cell[0], rows * cell[1]];
         let pixels = pixels(extent);
-        let own_extent = [columns * place.cell[0], rows * place.cell[1]];
+        let own_extent = [columns * georeference.cell[0], rows * georeference.cell[1]];
         let height = |index: usize| {
             let pixel = [index % pixels[0], index / pixels[0]];
             let part = [0, 1].map(|axis| (pixel[axis] as f64 + 0.5) / pixels[axis] as f64);
@@ -54,7 +54,7 @@ impl Ground {
             if terrain.is_valid_cell(column, row) { terrain.height_once(x, y) as f32 } else { f32::NAN }
         };
         let heights = (0..pixels[0] * pixels[1]).into_par_iter().map(height).collect();
-        let system = place.system.as_ref();
+        let system = georeference.system.as_ref();
         Self {
             grid: window.count,
             pixels,
@@ -67,7 +67,7 @@ impl Ground {
         }
     }
 
-    /// Where a place in own coordinates lies on the map: 0 to 1 eastwards and southwards.
+    /// Where a position in own coordinates lies on the map: 0 to 1 eastwards and southwards.
     pub(crate) fn part(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [(x - self.corner[0]) / self.own_extent[0], (self.corner[1] - y) / self.own_extent[1]]
     }

@@ -52,7 +52,7 @@ pub(crate) struct Layer {
 
 /// Kind of a mark on a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PlaceKind {
+pub(crate) enum MarkKind {
     /// A gauge: one point.
     Gauge,
     /// Water coming in: at a point or along a line.
@@ -65,8 +65,8 @@ pub(crate) enum PlaceKind {
 
 /// A mark: its name, and points in the terrain's own coordinates.
 #[derive(Debug, Clone)]
-pub(crate) struct Place {
-    pub kind: PlaceKind,
+pub(crate) struct MapMark {
+    pub kind: MarkKind,
     pub name: String,
     pub points: Vec<[f64; 2]>,
 }
@@ -81,7 +81,7 @@ pub(crate) struct MapFigure<'a> {
     /// The field over it.
     pub layer: Option<&'a Layer>,
     /// Marks.
-    pub places: &'a [Place],
+    pub marks: &'a [MapMark],
     /// Size.
     pub size: Size,
     /// Title and subtitle above the map.
@@ -161,7 +161,7 @@ struct Frame {
 }
 
 impl Frame {
-    fn place(&self, part: [f64; 2]) -> [f64; 2] {
+    fn position(&self, part: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|axis| self.corner[axis] + part[axis] * self.size[axis])
     }
 
@@ -187,7 +187,7 @@ impl MapFigure<'_> {
         if let Some(layer) = self.layer {
             svg.image(frame.corner, frame.size, &layer.url, 0.88);
         }
-        self.draw_places(&mut svg, &frame);
+        self.draw_marks(&mut svg, &frame);
         svg.rectangle(frame.corner, frame.size, "frame");
         let bottom = match self.size {
             Size::Thumb => {
@@ -232,25 +232,24 @@ impl MapFigure<'_> {
         }
     }
 
-    fn draw_places(&self, svg: &mut Svg, frame: &Frame) {
-        let (obstacles, marks): (Vec<_>, Vec<_>) =
-            self.places.iter().partition(|place| place.kind == PlaceKind::Obstacle);
+    fn draw_marks(&self, svg: &mut Svg, frame: &Frame) {
+        let (obstacles, marks): (Vec<_>, Vec<_>) = self.marks.iter().partition(|mark| mark.kind == MarkKind::Obstacle);
         for obstacle in obstacles {
             let parts: Vec<_> = obstacle.points.iter().map(|point| self.ground.part(*point)).collect();
-            let corners: Vec<_> = inside_unit_square(&parts).into_iter().map(|part| frame.place(part)).collect();
-            draw_place(svg, PlaceKind::Obstacle, &corners);
+            let corners: Vec<_> = inside_unit_square(&parts).into_iter().map(|part| frame.position(part)).collect();
+            draw_mark(svg, MarkKind::Obstacle, &corners);
         }
         if self.size == Size::Thumb {
             return;
         }
         let mut taken: Vec<[f64; 4]> = Vec::new();
         let mut names = Vec::new();
-        for place in marks {
+        for mark in marks {
             let points: Vec<[f64; 2]> =
-                place.points.iter().map(|point| frame.place(self.ground.part(*point))).collect();
-            let Some(anchor) = draw_place(svg, place.kind, &points) else { continue };
+                mark.points.iter().map(|point| frame.position(self.ground.part(*point))).collect();
+            let Some(anchor) = draw_mark(svg, mark.kind, &points) else { continue };
             taken.push([anchor[0] - 6.0, anchor[1] - 6.0, anchor[0] + 6.0, anchor[1] + 6.0]);
-            names.push((anchor, place.name.as_str()));
+            names.push((anchor, mark.name.as_str()));
         }
         if self.size == Size::Full {
             names.into_iter().for_each(|(anchor, name)| draw_name(svg, frame, anchor, name, &mut taken));
@@ -269,13 +268,13 @@ impl MapFigure<'_> {
         let [east, south] = [west + ground.own_extent[0], north - ground.own_extent[1]];
         let step = ticks::step(east - west, (frame.size[0] / 85.0).max(2.0) as usize);
         for value in ticks::multiples(west, east, step) {
-            let [x, _] = frame.place(ground.part([value, north]));
+            let [x, _] = frame.position(ground.part([value, north]));
             svg.line([x, frame.bottom()], [x, frame.bottom() + 5.0], "axis");
             svg.text([x, frame.bottom() + 18.0], Anchor::Middle, "number", &label(value, step));
         }
         let step = ticks::step(north - south, (frame.size[1] / 70.0).max(2.0) as usize);
         for value in ticks::multiples(south, north, step) {
-            let [_, y] = frame.place(ground.part([west, value]));
+            let [_, y] = frame.position(ground.part([west, value]));
             svg.line([frame.corner[0] - 5.0, y], [frame.corner[0], y], "axis");
             svg.text([frame.corner[0] - 9.0, y + 4.0], Anchor::End, "number", &label(value, step));
         }
@@ -326,22 +325,22 @@ impl MapFigure<'_> {
         let start = frame.corner[0].min(frame.width - 546.0);
         let (mut x, y) = (start, top + 12.0);
         let kinds = [
-            (PlaceKind::Gauge, "gauge"),
-            (PlaceKind::Inflow, "inflow"),
-            (PlaceKind::Section, "section"),
-            (PlaceKind::Obstacle, "obstacle"),
+            (MarkKind::Gauge, "gauge"),
+            (MarkKind::Inflow, "inflow"),
+            (MarkKind::Section, "section"),
+            (MarkKind::Obstacle, "obstacle"),
         ];
         for (kind, name) in kinds {
-            if !self.places.iter().any(|place| place.kind == kind) {
+            if !self.marks.iter().any(|mark| mark.kind == kind) {
                 continue;
             }
             let points = match kind {
-                PlaceKind::Section => vec![[x, y - 4.0], [x + 20.0, y - 4.0]],
-                PlaceKind::Obstacle => vec![[x, y - 9.0], [x + 14.0, y - 9.0], [x + 14.0, y], [x, y]],
+                MarkKind::Section => vec![[x, y - 4.0], [x + 20.0, y - 4.0]],
+                MarkKind::Obstacle => vec![[x, y - 9.0], [x + 14.0, y - 9.0], [x + 14.0, y], [x, y]],
                 _ => vec![[x + 7.0, y - 4.0]],
             };
-            let wide = if kind == PlaceKind::Section { 26.0 } else { 18.0 };
-            draw_place(svg, kind, &points);
+            let wide = if kind == MarkKind::Section { 26.0 } else { 18.0 };
+            draw_mark(svg, kind, &points);
             svg.text([x + wide, y], Anchor::Start, "small", name);
             x += wide + name.len() as f64 * 6.5 + 18.0;
         }
@@ -373,21 +372,21 @@ impl MapFigure<'_> {
 }
 
 /// Draws a mark and gives the point that its name belongs to.
-fn draw_place(svg: &mut Svg, kind: PlaceKind, points: &[[f64; 2]]) -> Option<[f64; 2]> {
+fn draw_mark(svg: &mut Svg, kind: MarkKind, points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let (first, last) = (*points.first()?, *points.last()?);
     match kind {
-        PlaceKind::Gauge => svg.circle(first, 4.5, "gauge"),
-        PlaceKind::Obstacle => svg.path(points.iter().copied(), true, "obstacle"),
-        PlaceKind::Section => {
+        MarkKind::Gauge => svg.circle(first, 4.5, "gauge"),
+        MarkKind::Obstacle => svg.path(points.iter().copied(), true, "obstacle"),
+        MarkKind::Section => {
             svg.path(points.iter().copied(), false, "section-under");
             svg.path(points.iter().copied(), false, "section");
             return Some(last);
         }
-        PlaceKind::Inflow if points.len() > 1 => {
+        MarkKind::Inflow if points.len() > 1 => {
             svg.path(points.iter().copied(), false, "inflow-line");
             return Some([0, 1].map(|axis| 0.5 * (first[axis] + last[axis])));
         }
-        PlaceKind::Inflow => {
+        MarkKind::Inflow => {
             let corner = |[x, y]: [f64; 2]| [first[0] + x, first[1] + y];
             svg.path([[-7.0, -6.0], [7.0, -6.0], [0.0, 7.0]].map(corner), true, "inflow");
         }
@@ -414,9 +413,9 @@ fn draw_name(svg: &mut Svg, frame: &Frame, [x, y]: [f64; 2], name: &str, taken: 
         (outside * 4.0 + taken.iter().map(|other| overlap(own, *other)).sum::<f64>()).round()
     };
     let best = sides.into_iter().min_by(|a, b| cost(a.2, a.0[1]).total_cmp(&cost(b.2, b.0[1])));
-    let Some((place, anchor, left)) = best else { return };
-    taken.push([left, place[1] - 11.0, left + width, place[1] + 3.0]);
-    svg.text(place, anchor, "label", name);
+    let Some((position, anchor, left)) = best else { return };
+    taken.push([left, position[1] - 11.0, left + width, position[1] + 3.0]);
+    svg.text(position, anchor, "label", name);
 }
 
 /// Common area of two boxes (left, top, right, bottom).
@@ -471,11 +470,11 @@ mod tests {
 
     #[test]
     fn maps_of_any_shape_can_be_drawn() {
-        let places = [
-            Place { kind: PlaceKind::Gauge, name: "G & <1>".into(), points: vec![[50.0, 50.0]] },
-            Place { kind: PlaceKind::Inflow, name: "river".into(), points: vec![[0.0, 50.0]] },
-            Place { kind: PlaceKind::Section, name: "S".into(), points: vec![[20.0, 0.0], [20.0, 100.0]] },
-            Place { kind: PlaceKind::Obstacle, name: "O".into(), points: vec![[5.0, 5.0], [15.0, 5.0], [5.0, 30.0]] },
+        let marks = [
+            MapMark { kind: MarkKind::Gauge, name: "G & <1>".into(), points: vec![[50.0, 50.0]] },
+            MapMark { kind: MarkKind::Inflow, name: "river".into(), points: vec![[0.0, 50.0]] },
+            MapMark { kind: MarkKind::Section, name: "S".into(), points: vec![[20.0, 0.0], [20.0, 100.0]] },
+            MapMark { kind: MarkKind::Obstacle, name: "O".into(), points: vec![[5.0, 5.0], [15.0, 5.0], [5.0, 30.0]] },
         ];
         for extent in [[400.0, 200.0], [4000.0, 20.0], [20.0, 4000.0]] {
             let ground = ground(extent);
@@ -488,7 +487,7 @@ mod tests {
                     ground: &ground,
                     relief_url: "#relief",
                     layer: Some(&layer),
-                    places: &places,
+                    marks: &marks,
                     size,
                     heading: None,
                     title: "t",
@@ -512,7 +511,7 @@ mod tests {
             ground: &ground,
             relief_url: &relief,
             layer: Some(&layer),
-            places: &[],
+            marks: &[],
             size: Size::Compact,
             heading: None,
             title: "t",

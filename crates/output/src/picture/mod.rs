@@ -20,7 +20,7 @@ pub(crate) use chart::{Chart, Series};
 pub(crate) use classes::{Classes, Ramp};
 pub(crate) use colour::{Colour, from_hex, of_part};
 pub(crate) use ground::Ground;
-pub(crate) use map::{Layer, MapFigure, Place, PlaceKind, Size, ground_image, heading, legend};
+pub(crate) use map::{Layer, MapFigure, MapMark, MarkKind, Size, ground_image, heading, legend};
 pub(crate) use plot::plot;
 pub(crate) use png::{data_url, svg_to_png, svg_url};
 pub(crate) use solids::{Cap, SolidsPicture, Vector, View};

@@ -113,9 +113,9 @@ fn exaggeration(ground: &Ground) -> f64 {
 }
 
 fn tint(part: f64) -> [f64; 3] {
-    let place = part.clamp(0.0, 1.0) * 2.0;
-    let from = (place as usize).min(1);
-    let mix = place - from as f64;
+    let position = part.clamp(0.0, 1.0) * 2.0;
+    let from = (position as usize).min(1);
+    let mix = position - from as f64;
     [0, 1, 2].map(|channel| TINTS[from][channel] + mix * (TINTS[from + 1][channel] - TINTS[from][channel]))
 }
 

@@ -27,12 +27,12 @@ impl Window {
         Self { first: [0, 0], count: grid }
     }
 
-    /// Round places given as fractional (column, row), on a grid with cells of `cell` m; all of it where they lie all over
+    /// Round positions given as fractional (column, row), on a grid with cells of `cell` m; all of it where they lie all over
     /// it, or where there are none.
-    pub(crate) fn round(grid: [usize; 2], cell: [f64; 2], places: impl Iterator<Item = [f64; 2]>) -> Self {
+    pub(crate) fn round(grid: [usize; 2], cell: [f64; 2], positions: impl Iterator<Item = [f64; 2]>) -> Self {
         let none = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        let range = places.fold(none, |range, place| {
-            [0, 1].map(|axis| [range[axis][0].min(place[axis]), range[axis][1].max(place[axis])])
+        let range = positions.fold(none, |range, position| {
+            [0, 1].map(|axis| [range[axis][0].min(position[axis]), range[axis][1].max(position[axis])])
         });
         if range[0][0] > range[0][1] {
             return Self::whole(grid);
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_small_flood_is_shown_close_and_a_large_one_whole() {
-        let of = |places: &[[f64; 2]]| Window::round([400, 300], [10.0, 10.0], places.iter().copied());
+        let of = |positions: &[[f64; 2]]| Window::round([400, 300], [10.0, 10.0], positions.iter().copied());
         assert_eq!(of(&[]), Window::whole([400, 300]));
         assert_eq!(of(&[[0.0, 0.0], [399.0, 299.0]]), Window::whole([400, 300]));
         let close = of(&[[100.0, 100.0], [199.0, 110.0]]);

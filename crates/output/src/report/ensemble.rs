@@ -1,11 +1,11 @@
 //! The report of an ensemble: maps and curves of statistics, the plan, and members that failed.
 
 use super::figures::{FIELDS, FieldKind, RELIEF, relief_definition};
+use super::marks;
 use super::parts::{self, Table};
-use super::places;
 use crate::OutputError;
 use crate::picture::{
-    Classes, Figure, Ground, Layer, MapFigure, Place, PlaceKind, Ramp, Size, Window, data_url, escape, ground_image,
+    Classes, Figure, Ground, Layer, MapFigure, MapMark, MarkKind, Ramp, Size, Window, data_url, escape, ground_image,
     legend, plot,
 };
 use crate::whole::write_bytes;
@@ -136,21 +136,21 @@ struct Atlas {
     ground: Ground,
     window: Window,
     columns: usize,
-    places: Vec<Place>,
+    marks: Vec<MapMark>,
 }
 
 impl Atlas {
     /// The ground round all that the maps show.
     fn of<'a>(scene: &Scene, terrain: &Terrain, maps: impl Iterator<Item = &'a EnsembleMap>) -> Self {
         let grid = terrain.map_grid();
-        let places = scene.flood().map_or_else(Vec::new, |scene| places(&scene.flood, terrain));
+        let marks = scene.flood().map_or_else(Vec::new, |scene| marks(&scene.flood, terrain));
         let has_value = |map: &'a EnsembleMap| map.values.iter().enumerate().filter(|(_, value)| !value.is_nan());
         let cells =
             maps.flat_map(has_value).map(|(cell, _)| [(cell % grid.columns) as f64, (cell / grid.columns) as f64]);
-        let marks = places.iter().filter(|place| place.kind != PlaceKind::Obstacle).flat_map(|place| &place.points);
-        let marks = marks.map(|point| grid.georeference.position(*point));
-        let window = Window::round([grid.columns, grid.rows], grid.cell_size(), cells.chain(marks));
-        Self { ground: Ground::of(terrain, &window), window, columns: grid.columns, places }
+        let points = marks.iter().filter(|mark| mark.kind != MarkKind::Obstacle).flat_map(|mark| &mark.points);
+        let points = points.map(|point| grid.georeference.position(*point));
+        let window = Window::round([grid.columns, grid.rows], grid.cell_size(), cells.chain(points));
+        Self { ground: Ground::of(terrain, &window), window, columns: grid.columns, marks }
     }
 
     fn draw(&self, map: &EnsembleMap, classes: &Classes, size: Size) -> Result<Figure, String> {
@@ -163,7 +163,7 @@ impl Atlas {
             ground: &self.ground,
             relief_url: &reference,
             layer: Some(&layer),
-            places: &self.places,
+            marks: &self.marks,
             size,
             heading: None,
             title: &map.title,

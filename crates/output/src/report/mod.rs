@@ -14,7 +14,7 @@ mod snapshots;
 mod validation;
 
 use crate::maps::read_map;
-use crate::picture::{Ground, Place, PlaceKind, Window};
+use crate::picture::{Ground, MapMark, MarkKind, Window};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_scene::{Circle, Flood, FloodScene, Obstacle, Scene, read_text};
@@ -50,7 +50,7 @@ pub struct Report {
     whole: Whole,
     /// Area of each cell, m2, for areas by class.
     cell_areas: Vec<f64>,
-    places: Vec<Place>,
+    marks: Vec<MapMark>,
     fields: Vec<Field>,
     snapshots: Vec<Snapshot>,
 }
@@ -73,13 +73,13 @@ impl Whole {
     }
 
     /// The window round the cells with a value and the marked positions except obstacles.
-    fn window(&self, field: Option<&Field>, places: &[Place], terrain: &Terrain) -> Window {
+    fn window(&self, field: Option<&Field>, marks: &[MapMark], terrain: &Terrain) -> Window {
         let [columns, _] = self.grid;
         let values = field.map_or(&[][..], |field| &field.values).iter().enumerate();
         let wet = values.filter(|(_, value)| !value.is_nan());
         let cells = wet.map(|(cell, _)| [(cell % columns) as f64, (cell / columns) as f64]);
-        let marks = places.iter().filter(|place| place.kind != PlaceKind::Obstacle);
-        let marked = marks.flat_map(|place| &place.points);
+        let inside = marks.iter().filter(|mark| mark.kind != MarkKind::Obstacle);
+        let marked = inside.flat_map(|mark| &mark.points);
         let marked = marked.map(|point| terrain.map_grid().georeference.position(*point));
         Window::round(self.grid, self.cell, cells.chain(marked))
     }
@@ -115,8 +115,8 @@ impl Report {
                 fields.push(Field { kind, values: read_map(&path, cells)? });
             }
         }
-        let (whole, places) = (Whole::of(terrain), places(&flood.flood, terrain));
-        let window = whole.window(fields.iter().find(|field| field.kind.name == "max_depth"), &places, terrain);
+        let (whole, marks) = (Whole::of(terrain), marks(&flood.flood, terrain));
+        let window = whole.window(fields.iter().find(|field| field.kind.name == "max_depth"), &marks, terrain);
         Ok(Self {
             folder: folder.to_owned(),
             scene: scene.clone(),
@@ -128,7 +128,7 @@ impl Report {
             window,
             whole,
             cell_areas: (0..cells).map(|cell| grid.cell_area(cell % grid.columns, cell / grid.columns)).collect(),
-            places,
+            marks,
             fields,
             snapshots: snapshots::read(&maps, cells)?,
         })
@@ -187,24 +187,24 @@ fn folder_name(folder: &Path) -> String {
 }
 
 /// Gauges, inflows, sections and obstacles of the scene, in the terrain's own coordinates.
-fn places(flood: &Flood, terrain: &Terrain) -> Vec<Place> {
-    let sections = flood.section.iter().map(|section| Place {
-        kind: PlaceKind::Section,
+fn marks(flood: &Flood, terrain: &Terrain) -> Vec<MapMark> {
+    let sections = flood.section.iter().map(|section| MapMark {
+        kind: MarkKind::Section,
         name: section.name.clone(),
         points: section.line.clone(),
     });
-    let inflows = flood.inflow.iter().map(|inflow| Place {
-        kind: PlaceKind::Inflow,
+    let inflows = flood.inflow.iter().map(|inflow| MapMark {
+        kind: MarkKind::Inflow,
         name: inflow.name.clone(),
         points: inflow.line.clone().unwrap_or_else(|| inflow.at.into_iter().collect()),
     });
     let gauges = flood.gauge.iter().map(|gauge| {
-        let from_lon_lat = gauge.lon_lat.and_then(|place| terrain.from_lon_lat(place).ok());
+        let from_lon_lat = gauge.lon_lat.and_then(|position| terrain.from_lon_lat(position).ok());
         let at = gauge.at.or(from_lon_lat.map(|model| terrain.to_own(model)));
-        Place { kind: PlaceKind::Gauge, name: gauge.name.clone(), points: at.into_iter().collect() }
+        MapMark { kind: MarkKind::Gauge, name: gauge.name.clone(), points: at.into_iter().collect() }
     });
-    let obstacles = flood.obstacle.iter().map(|obstacle| Place {
-        kind: PlaceKind::Obstacle,
+    let obstacles = flood.obstacle.iter().map(|obstacle| MapMark {
+        kind: MarkKind::Obstacle,
         name: obstacle.name.clone(),
         points: corners(obstacle, terrain),
     });

@@ -67,7 +67,7 @@ pub fn terrain(scene: &Scene) -> Terrain {
     Terrain::open(&scene.flood().unwrap().terrain, scene.seed, Path::new(".")).unwrap()
 }
 
-/// A flood wave that is a function of place and time: a level that rises, travels down the valley and falls.
+/// A flood wave that is a function of position and time: a level that rises, travels down the valley and falls.
 pub struct Wave<'a> {
     terrain: &'a Terrain,
     /// Lowest ground across the valley at each column of the grid, m.
@@ -88,7 +88,7 @@ impl<'a> Wave<'a> {
         Self { terrain, floor }
     }
 
-    /// Depth, m, and speed, m/s, at a place and time; none where dry.
+    /// Depth, m, and speed, m/s, at a position and time; none where dry.
     pub fn at(&self, [x, y]: [f64; 2], time: f64) -> Option<[f64; 2]> {
         let bounds = self.terrain.bounds();
         let along = (x - bounds.x_min) / (bounds.x_max - bounds.x_min);
@@ -115,15 +115,15 @@ impl<'a> Wave<'a> {
             |(name, title, unit)| Map { name, title, unit, columns, rows, values: vec![f32::NAN; columns * rows] };
         let mut maps = names.map(map);
         for cell in 0..columns * rows {
-            let place = grid.centre(cell % columns, cell / columns);
+            let position = grid.centre(cell % columns, cell / columns);
             if !self.terrain.is_valid_cell(cell % columns, cell / columns) {
                 continue;
             }
-            if let Some([depth, _]) = self.at(place, time) {
+            if let Some([depth, _]) = self.at(position, time) {
                 maps[0].values[cell] = depth as f32;
             }
             for sample in 0..=(time / period) as usize {
-                let Some([depth, speed]) = self.at(place, sample as f64 * period) else { continue };
+                let Some([depth, speed]) = self.at(position, sample as f64 * period) else { continue };
                 let larger = |map: &mut Map, value: f64| map.values[cell] = map.values[cell].max(value as f32);
                 larger(&mut maps[1], depth);
                 larger(&mut maps[2], speed);
@@ -141,11 +141,11 @@ impl<'a> Wave<'a> {
         let (mut depths, mut flows) = (Vec::new(), Vec::new());
         let [east, north] = bounds.size().map(|length| (length / 25.0) as usize);
         for i in 0..east * north {
-            let place =
+            let position =
                 [bounds.x_min + (i % east) as f64 * 25.0 + 12.1, bounds.y_min + (i / east) as f64 * 25.0 + 12.3];
-            let Some([depth, speed]) = self.at(place, time) else { continue };
+            let Some([depth, speed]) = self.at(position, time) else { continue };
             water.id.push(i as u64 + (1 << 60));
-            water.position.push([place[0], place[1], self.terrain.height(place[0], place[1]) + depth]);
+            water.position.push([position[0], position[1], self.terrain.height(position[0], position[1]) + depth]);
             water.velocity.push([speed, -0.1 * speed, 0.0]);
             water.radius.push(3.0);
             water.mass.push(54_000.0);
@@ -162,9 +162,9 @@ impl<'a> Wave<'a> {
     pub fn gauge_row(&self, scene: &Scene, time: f64) -> Vec<f64> {
         let mut row = Vec::new();
         for gauge in &scene.flood().unwrap().flood.gauge {
-            let place = gauge.at.unwrap();
-            let [depth, speed] = self.at(place, time).unwrap_or([0.0, 0.0]);
-            row.extend([depth, self.terrain.height(place[0], place[1]) + depth, speed, -0.1 * speed]);
+            let position = gauge.at.unwrap();
+            let [depth, speed] = self.at(position, time).unwrap_or([0.0, 0.0]);
+            row.extend([depth, self.terrain.height(position[0], position[1]) + depth, speed, -0.1 * speed]);
         }
         let section = 780.0 * (-((time - 2300.0) / 1100.0).powi(2)).exp();
         row.extend([section, 500.0 * time.min(2500.0), 620_000.0 + 500.0 * time, 90.0 * (time - 1800.0).max(0.0)]);

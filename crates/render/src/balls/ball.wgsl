@@ -6,11 +6,11 @@
 @group(1) @binding(2) var<storage, read> balls: array<BallInstance>;
 
 struct Hit {
-    place: vec3f,
+    position: vec3f,
     normal: vec3f,
 }
 
-// Place and radius as drawn.
+// Position and radius as drawn.
 fn sphere(number: u32) -> vec4f {
     let ball = balls[number];
     let centre = vec3f(ball.x, ball.y, ball.z);
@@ -70,6 +70,6 @@ fn hit(sight: Ray, ball: vec4f) -> Hit {
 }
 
 fn shaded(found: Hit, colour: vec3f, sight: Ray, pixel: vec2f) -> Drawn {
-    let shine = sunshine(found.place, found.normal, pixel);
-    return Drawn(vec4f(coated(colour, found.normal, -sight.direction, shine, style.gloss), 1.0), depth_at(found.place));
+    let shine = sunshine(found.position, found.normal, pixel);
+    return Drawn(vec4f(coated(colour, found.normal, -sight.direction, shine, style.gloss), 1.0), depth_at(found.position));
 }

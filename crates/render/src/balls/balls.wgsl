@@ -10,7 +10,7 @@ fn fragment(corner: Corner) -> Drawn {
 // To the sun a ball is a disc through its middle: the half that it lights lies before that.
 @fragment
 fn throw_shadow(corner: Corner) {
-    let offset = corner.place - corner.ball.xyz;
+    let offset = corner.position - corner.ball.xyz;
     if dot(offset, offset) > corner.ball.w * corner.ball.w {
         discard;
     }

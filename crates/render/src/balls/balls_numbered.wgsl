@@ -10,5 +10,5 @@ struct Numbered {
 @fragment
 fn fragment(corner: Corner) -> Numbered {
     let found = hit(sight_of(corner), corner.ball);
-    return Numbered(corner.number + 1u, depth_at(found.place));
+    return Numbered(corner.number + 1u, depth_at(found.position));
 }

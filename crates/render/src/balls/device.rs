@@ -84,7 +84,7 @@ impl BallPainter {
         shows: BallsOfDevice,
     ) -> Result<Balls, RenderError> {
         let BallsOfDevice { radius, raise, value } = shows;
-        let raised = |place: [f64; 3]| DVec3::new(place[0], place[1], raise * place[2]);
+        let raised = |position: [f64; 3]| DVec3::new(position[0], position[1], raise * position[2]);
         let settings = Settings {
             shift: (raised(particles.origin) - stage.centre()).as_vec3().into(),
             raise: raise as f32,
@@ -152,9 +152,9 @@ mod tests {
             let mut of_device = painter.balls_of_device(&gpu, &stage, &style, &particles, shows).unwrap();
             let there = all.iter().filter(|particle| particle.volume > 0.0);
             let balls = there.map(|particle| {
-                let place: [f64; 3] = std::array::from_fn(|axis| corner[axis] + f64::from(particle.place[axis]));
+                let position: [f64; 3] = std::array::from_fn(|axis| corner[axis] + f64::from(particle.place[axis]));
                 let number = if value == ValueOfDevice::Depth { particle.depth } else { particle.temperature };
-                ([place[0], place[1], raise * place[2]], 0.5 * f64::from(particle.spacing), f64::from(number))
+                ([position[0], position[1], raise * position[2]], 0.5 * f64::from(particle.spacing), f64::from(number))
             });
             let mut of_host = painter.balls(&gpu, &stage, &style, balls);
             let picture = |thing: Option<&mut dyn Drawable>| {

@@ -19,10 +19,10 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Corner {
     let ball = sphere(number);
     let round = round_of(ball);
     let aside = corner_of(vertex);
-    let place = ball.xyz + round.reach * (aside.x * round.right + aside.y * round.up);
+    let position = ball.xyz + round.reach * (aside.x * round.right + aside.y * round.up);
     let turned = mat3x3f(round.right, round.up, -round.sight);
     return Corner(
-        select(NOWHERE, view.clip_from_world * vec4f(place, 1.0), is_there(number)),
+        select(NOWHERE, view.clip_from_world * vec4f(position, 1.0), is_there(number)),
         aside,
         colour_of(number),
         view.sun.xyz * turned,

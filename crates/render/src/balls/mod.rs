@@ -114,7 +114,7 @@ impl BallPainter {
         }
     }
 
-    /// Balls at places with radii, m, each with the number that its colour shows. What has no finite place is left out.
+    /// Balls at positions with radii, m, each with the number that its colour shows. What has no finite position is left out.
     pub fn balls(
         &self,
         gpu: &Gpu,
@@ -122,8 +122,8 @@ impl BallPainter {
         style: &BallStyle,
         balls: impl IntoIterator<Item = ([f64; 3], f64, f64)>,
     ) -> Balls {
-        let instance = |(place, radius, value): ([f64; 3], f64, f64)| {
-            let [x, y, z] = stage.place(place).into();
+        let instance = |(position, radius, value): ([f64; 3], f64, f64)| {
+            let [x, y, z] = stage.position(position).into();
             BallInstance { x, y, z, radius: stage.length(radius), value: value as f32 }
         };
         let drawn = |ball: &BallInstance| [ball.x, ball.y, ball.z, ball.radius].iter().all(|number| number.is_finite());

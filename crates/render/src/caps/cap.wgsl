@@ -11,16 +11,16 @@ fn sphere_radius(cap: CapInstance) -> f32 {
 }
 
 fn sphere_centre(cap: CapInstance) -> vec3f {
-    return cap.place + (cap.height - sphere_radius(cap)) * cap.out;
+    return cap.position + (cap.height - sphere_radius(cap)) * cap.out;
 }
 
 // True for drops too small to be seen one by one, and for patches of such drops.
 fn is_fine(cap: CapInstance) -> bool {
-    return cap.covered > 0.0 || cap.radius < settings.finest * pixel_at(cap.place);
+    return cap.covered > 0.0 || cap.radius < settings.finest * pixel_at(cap.position);
 }
 
 // A corner of a square that faces the eye.
-fn facing_place(index: u32, middle: vec3f, reach: f32) -> vec3f {
+fn facing_position(index: u32, middle: vec3f, reach: f32) -> vec3f {
     let sight = ray_through(middle);
     let aside = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(sight.direction.z) > 0.9);
     let right = normalize(cross(sight.direction, aside));
@@ -30,5 +30,5 @@ fn facing_place(index: u32, middle: vec3f, reach: f32) -> vec3f {
 }
 
 fn facing_corner(index: u32, middle: vec3f, reach: f32) -> vec4f {
-    return view.clip_from_world * vec4f(facing_place(index, middle, reach), 1.0);
+    return view.clip_from_world * vec4f(facing_position(index, middle, reach), 1.0);
 }

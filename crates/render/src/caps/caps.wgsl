@@ -14,30 +14,30 @@ const SURROUNDINGS: f32 = 0.85;
 
 struct Corner {
     @builtin(position) clip: vec4f,
-    @location(0) place: vec3f,
+    @location(0) position: vec3f,
     @location(1) @interpolate(flat) number: u32,
 }
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u32) -> Corner {
     let cap = caps[number];
-    let middle = cap.place + 0.5 * cap.height * cap.out;
+    let middle = cap.position + 0.5 * cap.height * cap.out;
     // Caps higher than half a sphere bulge beyond their disc; necks reach beyond both.
     let bulge = select(cap.radius, sphere_radius(cap), cap.height > cap.radius);
     let reach = 1.05 * length(vec2f(bulge, 0.5 * cap.height)) + 2.0 * settings.neck;
-    return Corner(facing_corner(index, middle, select(reach, 0.0, is_fine(cap))), facing_place(index, middle, reach), number);
+    return Corner(facing_corner(index, middle, select(reach, 0.0, is_fine(cap))), facing_position(index, middle, reach), number);
 }
 
 // Distance from the joint surface of a cap and its neighbours, and its slope: spheres joined by the logarithm of the sum of
 // exponentials, which does not depend on their order (Quilez, "Smooth minimum", 2013).
-fn from_drops(cap: CapInstance, place: vec3f) -> vec4f {
-    let own = place - sphere_centre(cap);
+fn from_drops(cap: CapInstance, position: vec3f) -> vec4f {
+    let own = position - sphere_centre(cap);
     let own_distance = length(own) - sphere_radius(cap);
     var sum = 1.0;
     var slope = normalize(own);
     for (var at = cap.neighbours.x; at < cap.neighbours.x + cap.neighbours.y; at++) {
         let other = caps[neighbours[at]];
-        let offset = place - sphere_centre(other);
+        let offset = position - sphere_centre(other);
         let distance = length(offset) - sphere_radius(other);
         let weight = exp(clamp((own_distance - distance) / settings.neck, -30.0, 30.0));
         sum += weight;
@@ -62,7 +62,7 @@ fn reach_of(cap: CapInstance, sight: Ray) -> vec2f {
 @fragment
 fn fragment(corner: Corner) -> Drawn {
     let cap = caps[corner.number];
-    let sight = ray_through(corner.place);
+    let sight = ray_through(corner.position);
     var reach = reach_of(cap, sight);
     for (var at = cap.neighbours.x; at < cap.neighbours.x + cap.neighbours.y; at++) {
         let other = reach_of(caps[neighbours[at]], sight);
@@ -78,22 +78,22 @@ fn fragment(corner: Corner) -> Drawn {
             break;
         }
     }
-    let place = sight.origin + distance * sight.direction;
-    if found.w > 20.0 * near_enough || dot(place - cap.place, cap.out) < 0.0 {
+    let position = sight.origin + distance * sight.direction;
+    if found.w > 20.0 * near_enough || dot(position - cap.position, cap.out) < 0.0 {
         discard;
     }
-    return Drawn(vec4f(water(cap, place, normalize(found.xyz), sight.direction), 1.0), depth_at(place));
+    return Drawn(vec4f(water(cap, position, normalize(found.xyz), sight.direction), 1.0), depth_at(position));
 }
 
-// Light from a place on a drop.
-fn water(cap: CapInstance, place: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
+// Light from a position on a drop.
+fn water(cap: CapInstance, position: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
     // A drop is a lens, flat on one side: what is near behind it is seen smaller, and what is far upside down.
     let inside = refract(direction, normal, 1.0 / DROP_INDEX);
     let flat = cap.out * -sign(dot(inside, cap.out));
     let through = refract(inside, flat, DROP_INDEX);
     // Where no light leaves by the flat side it is thrown back there.
     let leaving = select(reflect(inside, flat), through, dot(through, through) > 0.0);
-    let clip = view.clip_from_world * vec4f(place + (inside - direction) * max(6.0 * cap.radius, 0.02), 1.0);
+    let clip = view.clip_from_world * vec4f(position + (inside - direction) * max(6.0 * cap.radius, 0.02), 1.0);
     let uv = clamp(clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5, vec2f(0.0), vec2f(1.0));
     let near = textureSampleLevel(behind, behind_sampler, uv, 0.0).rgb;
     let seen = mix(near, surroundings(leaving), SURROUNDINGS);

@@ -24,17 +24,17 @@ struct Corner {
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u32) -> Corner {
     let cap = caps[number];
-    let pixel = pixel_at(cap.place);
+    let pixel = pixel_at(cap.position);
     let spread = max(SPREAD, select(0.0, PATCH_SPREAD * cap.radius / pixel, cap.covered > 0.0));
     let reach = select(0.0, spread * pixel, is_fine(cap));
     let radius = cap.radius / pixel;
-    let facing = dot(cap.out, towards_eye(cap.place));
+    let facing = dot(cap.out, towards_eye(cap.position));
     let covered = select(1.0, cap.covered, cap.covered > 0.0);
     let area = PI * radius * radius * covered * max(facing, 0.15);
     let offset = 2.0 * vec2f(f32(index & 1u), f32(index >> 1u)) - 1.0;
     // Lifted off its surface, so that this does not hide it.
-    let lifted = cap.place + (cap.height + 2.0 * pixel) * towards_eye(cap.place);
-    return Corner(facing_corner(index, cap.place, reach), offset, area, depth_at(lifted), spread, number);
+    let lifted = cap.position + (cap.height + 2.0 * pixel) * towards_eye(cap.position);
+    return Corner(facing_corner(index, cap.position, reach), offset, area, depth_at(lifted), spread, number);
 }
 
 // Whether a pixel of a depth shows the surface on which a drop or a patch lies, not what is before it; beside a patch also not what is behind.
@@ -42,7 +42,7 @@ fn is_on_surface(cap: CapInstance, corner: Corner, depth: f32) -> bool {
     if cap.covered == 0.0 {
         return depth <= corner.depth;
     }
-    let away = world_at_pixel(corner.clip.xy, max(depth, 1e-6)) - cap.place;
+    let away = world_at_pixel(corner.clip.xy, max(depth, 1e-6)) - cap.position;
     let reach = PATCH_SPREAD * cap.radius;
     return depth > 0.0 && length(away) < reach && abs(dot(away, cap.out)) < 0.5 * reach;
 }

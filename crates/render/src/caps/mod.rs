@@ -98,23 +98,23 @@ impl CapPainter {
         fog: impl IntoIterator<Item = FogPatch>,
     ) -> Caps {
         let drawn = |cap: Cap| CapInstance {
-            place: stage.place(cap.position).into(),
+            position: stage.position(cap.position).into(),
             radius: stage.length(cap.radius),
             out: cap.normal.map(|part| part as f32),
             height: stage.length(cap.height),
             ..CapInstance::default()
         };
         let is_finite = |cap: &CapInstance| {
-            let CapInstance { place, radius, out, height, .. } = cap;
-            place.iter().chain(out).chain([radius, height]).all(|number| number.is_finite()) && *height > 0.0
+            let CapInstance { position, radius, out, height, .. } = cap;
+            position.iter().chain(out).chain([radius, height]).all(|number| number.is_finite()) && *height > 0.0
         };
         let mut all: Vec<CapInstance> = caps.into_iter().map(drawn).filter(is_finite).collect();
         let neck = NECK * all.iter().map(|cap| cap.radius).sum::<f32>() / all.len().max(1) as f32;
-        let discs: Vec<_> = all.iter().map(|cap| (Vec3::from(cap.place), cap.radius)).collect();
+        let discs: Vec<_> = all.iter().map(|cap| (Vec3::from(cap.position), cap.radius)).collect();
         let (spans, list) = neighbours::neighbours(&discs, GAP * neck);
         all.iter_mut().zip(spans).for_each(|(cap, span)| cap.neighbours = span);
         let patch = |fog: FogPatch| CapInstance {
-            place: stage.place(fog.position).into(),
+            position: stage.position(fog.position).into(),
             // A disc of the patch's area.
             radius: stage.length(2.0 * fog.half_width / std::f64::consts::PI.sqrt()),
             out: fog.normal.map(|part| part as f32),

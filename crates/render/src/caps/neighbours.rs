@@ -6,23 +6,23 @@ use std::collections::HashMap;
 /// Most neighbours of a drop.
 const MOST: usize = 24;
 
-/// For each disc (place and radius) those that it nearly touches: less than `gap` between them. Where neighbours begin in the
+/// For each disc (position and radius) those that it nearly touches: less than `gap` between them. Where neighbours begin in the
 /// list, how many, and the list.
 pub(super) fn neighbours(discs: &[(Vec3, f32)], gap: f32) -> (Vec<[u32; 2]>, Vec<u32>) {
     let largest = discs.iter().map(|(_, radius)| *radius).fold(0.0, f32::max);
     let cell = (2.0 * largest + gap).max(1e-6);
-    let at = |place: Vec3| (place / cell).floor().as_ivec3().to_array();
+    let at = |position: Vec3| (position / cell).floor().as_ivec3().to_array();
     let mut cells: HashMap<[i32; 3], Vec<u32>> = HashMap::new();
-    for (number, (place, _)) in discs.iter().enumerate() {
-        cells.entry(at(*place)).or_default().push(number as u32);
+    for (number, (position, _)) in discs.iter().enumerate() {
+        cells.entry(at(*position)).or_default().push(number as u32);
     }
     let (mut spans, mut all) = (Vec::with_capacity(discs.len()), Vec::new());
-    for (number, (place, radius)) in discs.iter().enumerate() {
-        let [x, y, z] = at(*place);
+    for (number, (position, radius)) in discs.iter().enumerate() {
+        let [x, y, z] = at(*position);
         let around = (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
         let between = |other: u32| {
             let (there, reach) = discs[other as usize];
-            (there - *place).length() - reach - radius
+            (there - *position).length() - reach - radius
         };
         let near = around.filter_map(|cell| cells.get(&cell)).flatten().copied();
         let mut found: Vec<u32> = near.filter(|other| *other as usize != number && between(*other) < gap).collect();

@@ -11,8 +11,8 @@ fn fragment(@builtin(position) pixel: vec4f) -> Drawn {
     if distance <= 0.0 || sight.direction.z >= 0.0 {
         discard;
     }
-    let place = sight.origin + distance * sight.direction;
-    let shine = sunshine(place, vec3f(0.0, 0.0, 1.0), pixel.xy);
+    let position = sight.origin + distance * sight.direction;
+    let shine = sunshine(position, vec3f(0.0, 0.0, 1.0), pixel.xy);
     let shadow = 1.0 - plane.darkness * (1.0 - shine);
-    return Drawn(vec4f(surroundings(sight.direction) * shadow, 1.0), depth_at(place));
+    return Drawn(vec4f(surroundings(sight.direction) * shadow, 1.0), depth_at(position));
 }

@@ -14,7 +14,7 @@ const DARKNESS: f32 = 0.38;
 pub struct Floor {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
-    place: wgpu::Buffer,
+    uniforms: wgpu::Buffer,
     height: f64,
     /// Another one at each height.
     state: u64,
@@ -33,9 +33,9 @@ impl Floor {
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
-        let place = uniform(gpu, "floor", &shared::Floor { darkness: DARKNESS, ..shared::Floor::default() });
-        let group = layout.bind(&gpu.device, &[("plane", place.as_entire_binding())]);
-        Self { pipeline: descriptor.opaque(gpu), group, place, height, state: static_layer::new_state() }
+        let uniforms = uniform(gpu, "floor", &shared::Floor { darkness: DARKNESS, ..shared::Floor::default() });
+        let group = layout.bind(&gpu.device, &[("plane", uniforms.as_entire_binding())]);
+        Self { pipeline: descriptor.opaque(gpu), group, uniforms, height, state: static_layer::new_state() }
     }
 
     /// Moves it to another height, m.
@@ -49,8 +49,8 @@ impl Floor {
 impl Drawable for Floor {
     fn prepare(&mut self, gpu: &Gpu, stage: &Stage, _camera: &Camera, _size: [u32; 2]) {
         let [x, y, _] = stage.centre().into();
-        let height = stage.place([x, y, self.height]).z;
-        gpu.queue.write_buffer(&self.place, 0, &height.to_le_bytes());
+        let height = stage.position([x, y, self.height]).z;
+        gpu.queue.write_buffer(&self.uniforms, 0, &height.to_le_bytes());
     }
 
     fn static_state(&self) -> Option<u64> {

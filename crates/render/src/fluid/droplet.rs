@@ -13,7 +13,7 @@ pub(super) const DRAWN_NUMBERS: u32 = 4096;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Droplet {
     /// Its middle, m.
-    pub place: [f64; 3],
+    pub position: [f64; 3],
     /// Radius, across `normal` where it is flattened, m.
     pub radius: f64,
     /// The direction along which it is flattened, of length 1.
@@ -35,16 +35,16 @@ pub struct Droplet {
 
 impl Droplet {
     /// A ball.
-    pub fn ball(place: [f64; 3], radius: f64) -> Self {
+    pub fn ball(position: [f64; 3], radius: f64) -> Self {
         let (normal, flow) = ([0.0, 0.0, 1.0], [0.0; 2]);
-        Self { place, radius, normal, flatness: 1.0, volume: 0.0, reach: radius, foam: 0.0, flow, id: 0 }
+        Self { position, radius, normal, flatness: 1.0, volume: 0.0, reach: radius, foam: 0.0, flow, id: 0 }
     }
 
     /// Height of its upper side beside its middle by this much `[eastwards, northwards]`, m, as if it went on flat.
     pub(super) fn level(&self, away: DVec2) -> f64 {
         let normal = DVec3::from(self.normal);
         let top = normal * self.flatness * self.radius;
-        self.place[2] + top.z - normal.truncate().dot(away - top.truncate()) / normal.z.max(1e-3)
+        self.position[2] + top.z - normal.truncate().dot(away - top.truncate()) / normal.z.max(1e-3)
     }
 
     /// As the device has it; none where a number is not finite.
@@ -52,7 +52,7 @@ impl Droplet {
         // Poly6 in the plane is 4 / (pi h^2) in its middle (Mueller, Charypar and Gross 2003).
         let depth = 4.0 * self.volume / (std::f64::consts::PI * self.reach * self.reach);
         let drawn = DropletInstance {
-            place: stage.place(self.place).into(),
+            position: stage.position(self.position).into(),
             radius: stage.length(self.radius),
             normal: DVec3::from(self.normal).normalize_or(DVec3::Z).as_vec3().into(),
             flatness: self.flatness as f32,

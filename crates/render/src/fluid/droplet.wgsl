@@ -3,7 +3,7 @@
 
 struct Sprite {
     @builtin(position) clip: vec4f,
-    // A place on the quad, from the particle's middle.
+    // A position on the quad, from the particle's middle.
     @location(0) offset: vec3f,
     @location(1) @interpolate(flat) middle: vec3f,
     @location(2) @interpolate(flat) radius: f32,
@@ -27,9 +27,9 @@ struct Quad {
 // The quad round a particle of this radius.
 fn quad_round(droplet: DropletInstance, radius: f32, flatness: f32) -> Quad {
     // No smaller than a pixel, or it would fall between them.
-    let least = 0.75 * pixel_at(droplet.place);
+    let least = 0.75 * pixel_at(droplet.position);
     let wide = max(radius, least);
-    let sight = ray_through(droplet.place).direction;
+    let sight = ray_through(droplet.position).direction;
     let cosine = dot(droplet.normal, sight);
     let lean = cross(droplet.normal, sight);
     // Seen along its normal, any direction across will do.
@@ -37,11 +37,11 @@ fn quad_round(droplet: DropletInstance, radius: f32, flatness: f32) -> Quad {
     let along = normalize(select(cross(sight, other), lean, dot(lean, lean) > 1e-8));
     let high = max(wide * sqrt(cosine * cosine + flatness * flatness * (1.0 - cosine * cosine)), least);
     // With perspective one sees past the middle: the outline is wider than the ball.
-    let distance = max(length(droplet.place - view.eye.xyz), 1e-6);
+    let distance = max(length(droplet.position - view.eye.xyz), 1e-6);
     let sine = min(wide / distance, 0.95);
     let wider = select(1.0, inverseSqrt(1.0 - sine * sine), view.eye.w > 0.5);
     return Quad(
-        droplet.place,
+        droplet.position,
         wider * wide * along,
         wider * high * cross(sight, along),
         wide,
@@ -49,7 +49,7 @@ fn quad_round(droplet: DropletInstance, radius: f32, flatness: f32) -> Quad {
     );
 }
 
-// A place on the quad, `offset` from its middle.
+// A position on the quad, `offset` from its middle.
 fn sprite_at(droplet: DropletInstance, quad: Quad, offset: vec3f) -> Sprite {
     var out = Sprite();
     out.clip = view.clip_from_world * vec4f(quad.middle + offset, 1.0);
@@ -69,7 +69,7 @@ fn corner_of(quad: Quad, index: u32) -> vec3f {
     return corner.x * quad.across + corner.y * quad.up;
 }
 
-// Where the line of sight through a place on the quad enters and leaves the particle, as lengths from that place; the first
+// Where the line of sight through a position on the quad enters and leaves the particle, as lengths from that position; the first
 // is greater than the second where it misses.
 fn crossing(in: Sprite, direction: vec3f) -> vec2f {
     // In coordinates stretched along the normal the particle is a ball.

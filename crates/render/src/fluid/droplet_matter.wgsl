@@ -13,7 +13,7 @@ fn matter_quad(droplet: DropletInstance) -> Quad {
     return quad_round(droplet, droplet.radius, droplet.flatness);
 }
 
-// Its water in the line of sight through a place on the quad.
+// Its water in the line of sight through a position on the quad.
 fn matter_at(in: Sprite) -> vec4f {
     let direction = ray_through(in.middle + in.offset).direction;
     if in.matter.x <= 0.0 {
@@ -24,8 +24,8 @@ fn matter_at(in: Sprite) -> vec4f {
     // Where the line of sight meets the surface; the share of the column is the kernel's (poly6, Mueller et al. 2003).
     let cosine = dot(in.normal, direction);
     let slant = select(-1.0, 1.0, cosine > 0.0) * max(abs(cosine), LEAST_COSINE);
-    let place = in.offset - dot(in.normal, in.offset) / slant * direction;
-    let out = dot(place, place) / (in.radius * in.radius);
+    let position = in.offset - dot(in.normal, in.offset) / slant * direction;
+    let out = dot(position, position) / (in.radius * in.radius);
     let left = max(1.0 - out, 0.0);
     let share = left * left * left;
     return vec4f(in.matter.x * share / abs(slant), in.matter.y * share, share, share);

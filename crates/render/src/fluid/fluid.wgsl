@@ -8,8 +8,8 @@ fn pixel_size(distance: f32) -> f32 {
     return view.forward.w * select(1.0, max(distance, 1e-4), view.eye.w > 0.5);
 }
 
-// The place at a distance, along the picture's middle line of sight, in a pixel.
-fn place_at(pixel: vec2i, distance: f32) -> vec3f {
+// The position at a distance, along the picture's middle line of sight, in a pixel.
+fn position_at(pixel: vec2i, distance: f32) -> vec3f {
     let away = (vec2f(pixel) + 0.5 - 0.5 * view.frame.xy) * pixel_size(distance);
     let right = view.world_from_view[0].xyz;
     let up = view.world_from_view[1].xyz;

@@ -26,5 +26,5 @@ fn fragment(@builtin(position) at: vec4f) -> Drawn {
         }
         return Drawn(vec4f(textureLoad(behind_colour, pixel, 0).rgb * (1.0 - darker), 1.0), depth);
     }
-    return Drawn(vec4f(colour.rgb, 1.0), depth_at(place_at(pixel, textureLoad(distances, pixel, 0).r)));
+    return Drawn(vec4f(colour.rgb, 1.0), depth_at(position_at(pixel, textureLoad(distances, pixel, 0).r)));
 }

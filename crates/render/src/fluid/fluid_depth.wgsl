@@ -18,5 +18,5 @@ fn fragment(in: Sprite) -> Nearest {
     if !surface.met {
         discard;
     }
-    return Nearest(distance_of(surface.place), depth_at(surface.place));
+    return Nearest(distance_of(surface.position), depth_at(surface.position));
 }

@@ -1,4 +1,4 @@
-// Normals of the smoothed surface, from the differences of places to the neighbouring pixels.
+// Normals of the smoothed surface, from the differences of positions to the neighbouring pixels.
 #import fluid
 
 @group(1) @binding(1) var distances: texture_2d<f32>;
@@ -15,7 +15,7 @@ fn difference(pixel: vec2i, step: vec2i, here: vec3f, distance: f32) -> vec4f {
     if there == 0.0 {
         return vec4f(0.0, 0.0, 0.0, 1e9);
     }
-    return vec4f(place_at(at, there) - here, abs(there - distance));
+    return vec4f(position_at(at, there) - here, abs(there - distance));
 }
 
 // The slope along an axis: from both sides, or from the one whose distance differs less where the other is beyond an edge.
@@ -47,7 +47,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         textureStore(normals, pixel, vec4u(0x80008000u));
         return;
     }
-    let here = place_at(pixel, distance);
+    let here = position_at(pixel, distance);
     let across = slope(pixel, vec2i(1, 0), here, distance);
     let down = slope(pixel, vec2i(0, 1), here, distance);
     let product = cross(down, across);

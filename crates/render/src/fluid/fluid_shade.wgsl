@@ -18,9 +18,9 @@ const AIR_OVER_WATER_INDEX: f32 = 1.0 / 1.333;
 const STRAIGHT: f32 = 0.02;
 // Light that a bed gives back that is out of sight.
 const BED: vec3f = vec3f(0.16, 0.15, 0.09);
-// How well particles cover a place in closed water: a sum of poly6 weights.
+// How well particles cover a position in closed water: a sum of poly6 weights.
 const CLOSED_COVER: f32 = 3.1;
-// How well they cover a place (halfway out of a straight shore 1.5) where water begins to be seen, and where
+// How well they cover a position (halfway out of a straight shore 1.5) where water begins to be seen, and where
 // nothing else is: shores follow this, not the rims of discs.
 const SHORE: vec2f = vec2f(0.35, 0.65);
 // Speeds at which ripples begin to be seen and from which they are steepest, m/s.
@@ -36,16 +36,16 @@ fn unfold(packed: u32) -> vec3f {
 }
 
 // What is behind the surface in the direction of the refracted light, where its way in water ends; 1 in the last where that is ground in the picture.
-fn seen_through(pixel: vec2i, place: vec3f, way: vec3f) -> vec4f {
+fn seen_through(pixel: vec2i, position: vec3f, way: vec3f) -> vec4f {
     let straight = (vec2f(pixel) + 0.5) / view.frame.xy;
     // Where the ground is cut off, so is the view.
-    let end = vec3f(clamp(place.xy + way.xy, fluid.within.xy, fluid.within.zw), place.z + way.z);
+    let end = vec3f(clamp(position.xy + way.xy, fluid.within.xy, fluid.within.zw), position.z + way.z);
     let clip = view.clip_from_world * vec4f(end, 1.0);
     let bent = clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5;
     let inside = all(bent > vec2f(0.0)) && all(bent < vec2f(1.0));
     let at = vec2i(bent * view.frame.xy);
     // What stands before the water is not seen through it.
-    let nearer = inside && textureLoad(behind_depth, clamp(at, vec2i(0), vec2i(view.frame.xy) - 1), 0) > depth_at(place);
+    let nearer = inside && textureLoad(behind_depth, clamp(at, vec2i(0), vec2i(view.frame.xy) - 1), 0) > depth_at(position);
     let uv = select(straight, bent, inside && !nearer);
     // Past the end of the ground one would look into the water's far side, which is not drawn: its bed stands for it.
     let depth = textureLoad(behind_depth, clamp(vec2i(uv * view.frame.xy), vec2i(0), vec2i(view.frame.xy) - 1), 0);
@@ -56,8 +56,8 @@ fn seen_through(pixel: vec2i, place: vec3f, way: vec3f) -> vec4f {
 }
 
 // Water in the line of sight, m. Beyond the border of what is drawn there are no particles whose share could be added.
-fn whole_thickness(matter: vec4f, place: vec3f) -> f32 {
-    let inside = min(place.xy - fluid.within.xy, fluid.within.zw - place.xy);
+fn whole_thickness(matter: vec4f, position: vec3f) -> f32 {
+    let inside = min(position.xy - fluid.within.xy, fluid.within.zw - position.xy);
     let beside = 1.0 - smoothstep(0.0, 2.0 * fluid.smoothing.x, min(inside.x, inside.y));
     return matter.r * mix(1.0, clamp(CLOSED_COVER / max(matter.a, 0.1), 1.0, 4.0), beside);
 }
@@ -69,8 +69,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let distance = textureLoad(distances, pixel, 0).r;
-    let place = place_at(pixel, distance);
-    if distance == 0.0 || textureLoad(behind_depth, pixel, 0) > depth_at(place) {
+    let position = position_at(pixel, distance);
+    if distance == 0.0 || textureLoad(behind_depth, pixel, 0) > depth_at(position) {
         textureStore(shaded, pixel, vec4f(0.0));
         return;
     }
@@ -84,11 +84,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let beside = textureLoad(behind_colour, pixel, 0).rgb * (1.0 - WET * damp);
     let velocity = textureSampleLevel(flow, linear, uv, 0.0).xy / max(matter.a, 1e-3);
-    let patterns = carried(place.xy, velocity / view.frame.z);
+    let patterns = carried(position.xy, velocity / view.frame.z);
     let moving = smoothstep(RIPPLED.x, RIPPLED.y, length(velocity));
-    let pixel_here = pixel_at(place);
+    let pixel_here = pixel_at(position);
     let smooth_normal = unfold(textureLoad(normals, pixel, 0).r);
-    let to_eye = towards_eye(place);
+    let to_eye = towards_eye(position);
     var normal = smooth_normal;
     if moving * fluid.ripples.y > 0.0 {
         // Seen at a grazing angle the sides of ripples that face away are hidden.
@@ -97,20 +97,20 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         normal = normalize(smooth_normal - vec3f(slope, 0.0));
     }
     let cosine = clamp(dot(normal, to_eye), 0.0, 1.0);
-    let water = whole_thickness(matter, place);
+    let water = whole_thickness(matter, position);
     // A film so thin that it does not close is not seen.
     let closed = smoothstep(0.0, fluid.surface.y, water * cosine);
 
     let refracted = refract(-to_eye, normal, AIR_OVER_WATER_INDEX);
     let steep = max(-dot(refracted, normal), 0.1);
     let path = water * cosine / steep;
-    let shine = sunshine_by(FEW_SHADOW_TAPS, place, normal, vec2f(pixel));
-    let seen = seen_through(pixel, place, refracted * path / view.frame.z);
+    let shine = sunshine_by(FEW_SHADOW_TAPS, position, normal, vec2f(pixel));
+    let seen = seen_through(pixel, position, refracted * path / view.frame.z);
     var ground = seen.rgb;
     // Waves gather light on the bed where the water is neither a film nor deep.
     let gathered = shine * sqrt(moving) * (1.0 - exp(-8.0 * path)) * exp(-1.2 * path);
     if select(0.0, gathered, fluid.ripples.y > 0.0) > 0.01 {
-        let bed = carried(place.xy + refracted.xy * path / view.frame.z, velocity / view.frame.z);
+        let bed = carried(position.xy + refracted.xy * path / view.frame.z, velocity / view.frame.z);
         ground *= 1.0 + 0.6 * gathered * caustics(bed, pixel_here);
     }
     // The light that the ground gives back came through the water too.
@@ -126,7 +126,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let upwards = normalize(vec3f(back.xy, abs(back.z)));
     var mirror = surroundings(upwards);
     if fresnel > LEAST_MIRRORED {
-        mirror = mirrored_light(place, upwards);
+        mirror = mirrored_light(position, upwards);
     }
     let half_way = normalize(view.sun.xyz + to_eye);
     let highlight = fluid.colour.w * pow(max(dot(normal, half_way), 0.0), fluid.surface.x) * shine * closed;
@@ -137,6 +137,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let white = lace(patterns, foam, pixel_here);
         colour = mix(colour, matt(vec3f(0.9), normal, shine), clamp(white * closed, 0.0, 0.95));
     }
-    colour = hazed(colour, place);
+    colour = hazed(colour, position);
     textureStore(shaded, pixel, vec4f(mix(beside, colour, covered), 1.0));
 }

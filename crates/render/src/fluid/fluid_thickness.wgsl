@@ -9,7 +9,7 @@ fn vertex(droplet: DropletInstance, @builtin(vertex_index) index: u32) -> Sprite
 
 struct Added {
     @location(0) matter: vec4f,
-    // Velocity times how well it covers the place.
+    // Velocity times how well it covers the position.
     @location(1) flow: vec4f,
 }
 

@@ -7,9 +7,9 @@ use wgpu::{TextureFormat, TextureUsages as Usage};
 
 /// Distance along the line of sight of the picture's middle; 0 where there is no fluid.
 pub(super) const DISTANCE: TextureFormat = TextureFormat::R32Float;
-/// Water, m; foam; what foam is to be divided by; how well particles cover the place.
+/// Water, m; foam; what foam is to be divided by; how well particles cover the position.
 pub(super) const THICKNESS: TextureFormat = TextureFormat::Rgba16Float;
-/// Velocity eastwards and northwards, m/s, times how well particles cover the place.
+/// Velocity eastwards and northwards, m/s, times how well particles cover the position.
 pub(super) const FLOW: TextureFormat = TextureFormat::Rgba16Float;
 /// A direction, packed.
 pub(super) const NORMAL: TextureFormat = TextureFormat::R32Uint;

@@ -12,19 +12,19 @@ const MIRROR_STEPS: i32 = 28;
 const FIRST_STEP: f32 = 0.004;
 const GROWTH: f32 = 1.18;
 
-// Where a place is in the picture behind: uv, and depth.
-fn in_picture(place: vec3f) -> vec3f {
-    let clip = view.clip_from_world * vec4f(place, 1.0);
+// Where a position is in the picture behind: uv, and depth.
+fn in_picture(position: vec3f) -> vec3f {
+    let clip = view.clip_from_world * vec4f(position, 1.0);
     return vec3f(clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5, select(-1.0, clip.z / clip.w, clip.w > 0.0));
 }
 
-// Light from a direction on a place.
-fn mirrored_light(place: vec3f, direction: vec3f) -> vec3f {
+// Light from a direction on a position.
+fn mirrored_light(position: vec3f, direction: vec3f) -> vec3f {
     let sky = surroundings(direction);
     var along = FIRST_STEP;
     var step = FIRST_STEP;
     for (var k = 0; k < MIRROR_STEPS; k++) {
-        let there = place + along * direction;
+        let there = position + along * direction;
         let seen = in_picture(there);
         if any(seen.xy <= vec2f(0.0)) || any(seen.xy >= vec2f(1.0)) || seen.z <= 0.0 {
             return sky;

@@ -34,7 +34,6 @@ pub use droplet::Droplet;
 pub use painter::FluidPainter;
 pub use passes::FluidPass;
 pub use sides::WaterSides;
-pub(crate) use style::GRAVITY;
 pub use style::{FluidStyle, Smoothing};
 pub use thing::Fluid;
 pub use water::Water;

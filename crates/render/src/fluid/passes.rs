@@ -74,22 +74,25 @@ impl Fluid {
     /// Draws particles by a compute shader into numbers that are cleared before.
     fn splat_into(&self, (name, numbers): (&str, &wgpu::Buffer), splat: &Filter, frame: &mut Through<'_>) {
         frame.encoder.clear_buffer(numbers, 0, None);
-        let groups: Vec<_> = self
-            .droplets
-            .iter()
-            .map(|batch| {
-                let [instances, draw_args] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
-                let bound = [
-                    ("fluid", self.settings.as_entire_binding()),
-                    ("droplets", instances),
-                    ("draw_args", draw_args),
-                    (name, numbers.as_entire_binding()),
-                ];
-                splat.layout.bind(&frame.gpu.device, &bound)
-            })
-            .collect();
+        let bound = [("fluid", self.settings.as_entire_binding()), (name, numbers.as_entire_binding())];
+        self.run_over_particles(splat, &bound, frame);
+    }
+
+    /// Runs a compute shader over all particles; they and their number are bound beside `bound`.
+    fn run_over_particles(
+        &self,
+        filter: &Filter,
+        bound: &[(&str, wgpu::BindingResource<'_>)],
+        frame: &mut Through<'_>,
+    ) {
+        let of_batch = |batch: &Batch| {
+            let [droplets, draw_args] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
+            let bound = [&[("droplets", droplets), ("draw_args", draw_args)], bound].concat();
+            filter.layout.bind(&frame.gpu.device, &bound)
+        };
+        let groups: Vec<_> = self.droplets.iter().map(of_batch).collect();
         let mut pass = frame.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&splat.pipeline);
+        pass.set_pipeline(&filter.pipeline);
         pass.set_bind_group(0, frame.view, &[]);
         for (batch, group) in self.droplets.iter().zip(&groups) {
             pass.set_bind_group(1, group, &[]);
@@ -178,34 +181,14 @@ impl Fluid {
 
     /// Notes where there is water.
     fn wet(&self, frame: &mut Through<'_>) {
-        let marking = &self.painter.wet_mark;
-        let wet = &self.wet_ground;
-        let of_batch = |batch: &Batch| {
-            let [droplets, draw_args] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
-            let bound = [
-                ("wet", wet.uniforms.as_entire_binding()),
-                ("droplets", droplets),
-                ("draw_args", draw_args),
-                ("wet_latest", wet.latest.as_entire_binding()),
-                ("wet_levels", wet.levels.as_entire_binding()),
-            ];
-            marking.layout.bind(&frame.gpu.device, &bound)
-        };
-        let groups: Vec<_> = self.droplets.iter().map(of_batch).collect();
-        let mut pass = frame.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&marking.pipeline);
-        pass.set_bind_group(0, frame.view, &[]);
-        for (batch, group) in self.droplets.iter().zip(&groups) {
-            pass.set_bind_group(1, group, &[]);
-            batch.splat(&mut pass);
-        }
+        self.run_over_particles(&self.painter.wet_mark, &self.wet_ground.bindings(), frame);
     }
 
     fn shade(&self, layers: &Layers, frame: &mut Through<'_>) {
         let read = [self.surface(layers), &layers.normals, &layers.thickness, &layers.flow].map(whole);
         let [distances, normals, thickness, flow] = read.each_ref().map(TextureView);
         let shaded = whole(&layers.shaded);
-        let bound = [
+        let mut bound = vec![
             ("fluid", self.settings.as_entire_binding()),
             ("distances", distances),
             ("normals", normals),
@@ -215,25 +198,21 @@ impl Fluid {
             ("behind_depth", TextureView(frame.behind_depth)),
             ("linear", Sampler(&self.painter.sampler)),
             ("shaded", TextureView(&shaded)),
-            ("wet", self.wet_ground.uniforms.as_entire_binding()),
-            ("wet_latest", self.wet_ground.latest.as_entire_binding()),
-            ("wet_levels", self.wet_ground.levels.as_entire_binding()),
         ];
+        bound.extend(self.wet_ground.bindings());
         run(&self.painter.shading, &bound, layers.size, frame);
     }
 
     fn compose(&self, layers: &Layers, frame: &mut Through<'_>) {
         let [distances, shaded] = [self.surface(layers), &layers.shaded].map(whole);
-        let bound = [
+        let mut bound = vec![
             ("fluid", self.settings.as_entire_binding()),
             ("distances", TextureView(&distances)),
             ("shaded", TextureView(&shaded)),
             ("behind_colour", TextureView(frame.behind_colour)),
             ("behind_depth", TextureView(frame.behind_depth)),
-            ("wet", self.wet_ground.uniforms.as_entire_binding()),
-            ("wet_latest", self.wet_ground.latest.as_entire_binding()),
-            ("wet_levels", self.wet_ground.levels.as_entire_binding()),
         ];
+        bound.extend(self.wet_ground.bindings());
         let group = self.painter.composed.bind(&frame.gpu.device, &bound);
         let mut pass = frame.begin("composing");
         pass.set_pipeline(&self.painter.composing);

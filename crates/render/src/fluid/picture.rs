@@ -26,7 +26,7 @@ fn droplets() -> Vec<Droplet> {
     let column = |index: i32| {
         let (x, y) = (0.05 * f64::from(index % 41 - 20), 0.05 * f64::from(index / 41 - 20));
         Droplet {
-            place: [x, y, height(x, y) - 0.006],
+            position: [x, y, height(x, y) - 0.006],
             radius: 0.0625,
             normal: [-0.25 * (5.0 * x).cos() * (4.0 * y).cos(), 0.2 * (5.0 * x).sin() * (4.0 * y).sin(), 1.0],
             flatness: 0.1,

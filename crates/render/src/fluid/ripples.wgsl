@@ -1,23 +1,23 @@
-// Patterns that go with the water: ripples, foam and caustics. A pattern is carried by the velocity at each place for a while, then comes anew;
+// Patterns that go with the water: ripples, foam and caustics. A pattern is carried by the velocity at each position for a while, then comes anew;
 // two of them take turns, so that none is seen to come or go (Max and Becker, "Flow Visualization Using Moving Textures", 1995).
 #import fluid
 #import noise
 
-// A pattern at a place: where it has come from, in lengths of the longest ripples, and how much it counts.
+// A pattern at a position: where it has come from, in lengths of the longest ripples, and how much it counts.
 struct Carried {
     at: vec2f,
     weight: f32,
 }
 
-// The two patterns of now that water of a velocity, stage units a second, has brought to a place.
-fn carried(place: vec2f, velocity: vec2f) -> array<Carried, 2> {
+// The two patterns of now that water of a velocity, stage units a second, has brought to a position.
+fn carried(position: vec2f, velocity: vec2f) -> array<Carried, 2> {
     var both = array(Carried(), Carried());
     for (var k = 0; k < 2; k++) {
         let turns = fluid.ripples.z / fluid.ripples.w + 0.5 * f32(k);
         let age = fract(turns);
         // Another piece of the pattern at each turn.
         let piece = vec2f(37.0, 17.0) * (floor(turns) % 64.0 + 100.0 * f32(k));
-        let origin = place - velocity * (age - 0.5) * fluid.ripples.w;
+        let origin = position - velocity * (age - 0.5) * fluid.ripples.w;
         both[k] = Carried(origin / fluid.ripples.x + piece, 1.0 - abs(2.0 * age - 1.0));
     }
     return both;
@@ -58,7 +58,7 @@ fn ripples(both: array<Carried, 2>, pixel: f32) -> vec2f {
     return 0.5 * slope;
 }
 
-// Whether foam that covers a part of the water is at a place: threads and patches, from 0 to 1.
+// Whether foam that covers a part of the water is at a position: threads and patches, from 0 to 1.
 fn lace(both: array<Carried, 2>, part: f32, pixel: f32) -> f32 {
     var patterns = both;
     var covered = 0.0;

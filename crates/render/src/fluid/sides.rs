@@ -74,11 +74,11 @@ pub(super) fn faces(stage: &Stage, field: &HeightField, droplets: &[Droplet]) ->
 /// Two triangles between two nodes from the ground to the water's surface.
 fn face(stage: &Stage, field: &HeightField, ends: [(usize, f64); 2], [x, y]: [f32; 2]) -> [Vertex; 6] {
     let vertex = |(node, level): (usize, f64), is_low: bool| {
-        let [east, north] = field.place(node);
+        let [east, north] = field.position(node);
         let ground = f64::from(field.heights[node]).min(level);
-        let [px, py, pz] = stage.place([east, north, if is_low { ground } else { level }]).into();
+        let [px, py, pz] = stage.position([east, north, if is_low { ground } else { level }]).into();
         let deep = if is_low { stage.length(level - ground) } else { 0.0 };
-        Vertex { place: [px, py, pz, deep], normal: [x, y, 0.0, 0.0] }
+        Vertex { position: [px, py, pz, deep], normal: [x, y, 0.0, 0.0] }
     };
     let [a, b] = ends;
     [(a, false), (b, false), (a, true), (a, true), (b, false), (b, true)].map(|(end, is_low)| vertex(end, is_low))
@@ -114,17 +114,17 @@ fn levels(field: &HeightField, border: &Border, droplets: &[Droplet]) -> Vec<Opt
     let mut sums = vec![(0.0, 0.0); border.nodes.len()];
     let [start, cell] = [field.origin[border.axis], field.cell[border.axis]];
     let across = 1 - border.axis;
-    let line = field.place(border.nodes[0])[across];
+    let line = field.position(border.nodes[0])[across];
     for droplet in droplets.iter().filter(|droplet| droplet.volume > 0.0) {
         let reach = droplet.reach;
-        if (droplet.place[across] - line).abs() >= reach {
+        if (droplet.position[across] - line).abs() >= reach {
             continue;
         }
-        let along = droplet.place[border.axis];
+        let along = droplet.position[border.axis];
         let node = |at: f64| ((at - start) / cell).max(0.0) as usize;
         let (first, end) = (node(along - reach), node(along + reach + cell).min(border.nodes.len()));
         for (node, sums) in border.nodes.iter().zip(&mut sums).take(end).skip(first) {
-            let away = DVec2::from(field.place(*node)) - DVec3::from(droplet.place).truncate();
+            let away = DVec2::from(field.position(*node)) - DVec3::from(droplet.position).truncate();
             let weight = (1.0 - away.length_squared() / (reach * reach)).max(0.0).powi(3);
             sums.0 += weight;
             sums.1 += weight * droplet.level(away);
@@ -147,13 +147,13 @@ mod tests {
         let disc = |index: i32| {
             let (x, y) = (f64::from(index % 20) + 0.5, f64::from(index / 20) + 0.5);
             let normal = DVec3::new(-0.1, 0.0, 1.0).normalize();
-            let place = DVec3::new(x, y, 3.0 + 0.1 * x) - 0.1 * normal;
+            let position = DVec3::new(x, y, 3.0 + 0.1 * x) - 0.1 * normal;
             Droplet {
                 normal: normal.into(),
                 flatness: 0.1,
                 volume: 2.0,
                 reach: 2.0,
-                ..Droplet::ball(place.into(), 1.0)
+                ..Droplet::ball(position.into(), 1.0)
             }
         };
         let droplets: Vec<Droplet> = (0..200).map(disc).collect();

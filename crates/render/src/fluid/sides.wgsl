@@ -4,7 +4,7 @@
 
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {
-    let to_eye = towards_eye(corner.place);
+    let to_eye = towards_eye(corner.position);
     // Those on the far side would be seen through the water.
     if dot(corner.normal, to_eye) < 0.0 {
         discard;

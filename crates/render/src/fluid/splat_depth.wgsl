@@ -20,7 +20,7 @@ fn splat(droplet: DropletInstance, quad: Quad, pixel: vec2i, size: vec2f) {
     }
     let surface = surface_at(sprite_at(droplet, quad, at.offset));
     if surface.met {
-        let distance = max(distance_of(surface.place), 0.0);
+        let distance = max(distance_of(surface.position), 0.0);
         atomicMax(&nearest[u32(pixel.y) * u32(size.x) + u32(pixel.x)], ~bitcast<u32>(distance));
     }
 }

@@ -1,10 +1,7 @@
 //! Styles of fluids.
 
 use crate::Stage;
-use crate::shared::FluidUniforms;
-
-/// m/s2.
-pub(crate) const GRAVITY: f64 = 9.81;
+use crate::shared::{FREE_FALL, FluidUniforms};
 
 /// Bare ground in the sun looks dry after about an hour, s.
 const DRYING: f64 = 1800.0;
@@ -89,7 +86,7 @@ impl FluidStyle {
     /// Time in which a pattern that goes with the water comes and goes, s: that in which water as fast as shallow waves of the ripples' length goes so far
     /// four times.
     fn turn(&self) -> f64 {
-        4.0 * (self.ripple / GRAVITY).sqrt()
+        4.0 * (self.ripple / FREE_FALL).sqrt()
     }
 
     /// The same as shaders have it, at a time, s.
@@ -98,7 +95,7 @@ impl FluidStyle {
         let [own_red, own_green, own_blue] = self.colour;
         let [width, range, rounding] = [self.width, self.range, self.rounding].map(|length| stage.length(length));
         let [[west, south], [east, north]] = match self.within {
-            Some(corners) => corners.map(|[x, y]| stage.place([x, y, 0.0]).truncate().to_array()),
+            Some(corners) => corners.map(|[x, y]| stage.position([x, y, 0.0]).truncate().to_array()),
             None => [[f32::MIN; 2], [f32::MAX; 2]],
         };
         // Single precision would be coarse after hours: patterns come anew after so many turns.

@@ -54,7 +54,7 @@ struct Column {
 
 impl Water {
     /// Particles as they are drawn at a time, s, not before that of the last call. Those that have a column `depth` of more than 0 lie
-    /// on the ground; the others are in the air. `slope` is the ground's at a place `[eastwards, northwards]`, m per m: water without
+    /// on the ground; the others are in the air. `slope` is the ground's at a position `[eastwards, northwards]`, m per m: water without
     /// neighbours lies along it.
     pub fn droplets(
         &mut self,
@@ -123,10 +123,10 @@ fn on_ground(
         Column { index, spacing, at, state: DVec3::new(z, east, north), ground }
     };
     let mut columns: Vec<Column> = ground.iter().map(|&index| column(index)).collect();
-    let place = |axis: usize| -> Vec<f64> { columns.iter().map(|column| column.at[axis]).collect() };
+    let along = |axis: usize| -> Vec<f64> { columns.iter().map(|column| column.at[axis]).collect() };
     let mean = columns.iter().map(|column| column.spacing).sum::<f64>() / columns.len() as f64;
     let mut cells = Cells::default();
-    let order = cells.sort([&place(0), &place(1)], [REACH * mean; 2]).to_vec();
+    let order = cells.sort([&along(0), &along(1)], [REACH * mean; 2]).to_vec();
     columns = order.iter().map(|&at| column(ground[at as usize])).collect();
     settle(&cells, &mut columns);
     // Particles tremble, more so in scheme sph-swe; what is seen is what they do together.
@@ -173,7 +173,7 @@ fn disc(set: &ParticleSet, cells: &Cells<2>, columns: &[Column], own: &Column) -
     let radius = DISC * own.spacing;
     let middle = own.at.extend(fit.here.x) - normal * (FLATNESS * radius);
     Droplet {
-        place: middle.into(),
+        position: middle.into(),
         radius,
         normal: normal.into(),
         flatness: FLATNESS,
@@ -274,19 +274,19 @@ mod tests {
 
     /// Water 1 m deep whose surface is a tilted plane, every particle 1 m from the next, with velocities.
     fn tilted(velocity: impl Fn(f64) -> [f64; 3]) -> ParticleSet {
-        let places: Vec<[f64; 3]> = (0..400)
+        let positions: Vec<[f64; 3]> = (0..400)
             .map(|index| [f64::from(index % 20), f64::from(index / 20)])
             .map(|[x, y]| [x, y, 0.2 * x - 0.1 * y])
             .collect();
-        let depth = Values::Scalar(vec![1.0; places.len()]);
+        let depth = Values::Scalar(vec![1.0; positions.len()]);
         ParticleSet {
             name: "water".into(),
             id: (0..400).collect(),
-            velocity: places.iter().map(|place| velocity(place[0])).collect(),
-            radius: vec![0.5; places.len()],
-            mass: vec![1000.0; places.len()],
+            velocity: positions.iter().map(|position| velocity(position[0])).collect(),
+            radius: vec![0.5; positions.len()],
+            mass: vec![1000.0; positions.len()],
             columns: vec![Named { name: "depth", unit: "m", values: depth }],
-            position: places,
+            position: positions,
         }
     }
 
@@ -296,14 +296,14 @@ mod tests {
         let middle = droplets.iter().find(|droplet| droplet.id == 210).unwrap();
         let normal = DVec3::new(-0.2, 0.1, 1.0).normalize();
         assert!(DVec3::from(middle.normal).angle_between(normal) < 0.02);
-        let top = DVec3::from(middle.place) + DVec3::from(middle.normal) * middle.flatness * middle.radius;
+        let top = DVec3::from(middle.position) + DVec3::from(middle.normal) * middle.flatness * middle.radius;
         assert!((top.z - (0.2 * top.x - 0.1 * top.y)).abs() < 1e-3, "{top}");
     }
 
     #[test]
     fn lone_water_lies_along_the_ground() {
         let mut set = tilted(|_| [0.0; 3]);
-        set.position.iter_mut().for_each(|place| (0..2).for_each(|k| place[k] *= 9.0));
+        set.position.iter_mut().for_each(|position| (0..2).for_each(|k| position[k] *= 9.0));
         let droplets = Water::default().droplets(0.0, &set, |_| [0.3, -0.4]);
         let normal = DVec3::new(-0.3, 0.4, 1.0).normalize();
         assert!(droplets.iter().all(|droplet| DVec3::from(droplet.normal).angle_between(normal) < 1e-6));
@@ -327,13 +327,13 @@ mod tests {
         for index in [209, 210, 229, 230] {
             set.position[index][2] += 30.0;
         }
-        let place = set.position.clone();
-        let level = |index: usize| 0.2 * place[index][0] - 0.1 * place[index][1];
+        let position = set.position.clone();
+        let level = |index: usize| 0.2 * position[index][0] - 0.1 * position[index][1];
         let droplets = Water::default().droplets(0.0, &set, LEVEL_GROUND);
         let piled = droplets.iter().find(|droplet| droplet.id == 209).unwrap();
-        assert!(piled.place[2] < level(209) + 2.0, "{:?}", piled.place);
+        assert!(piled.position[2] < level(209) + 2.0, "{:?}", piled.position);
         let calm = droplets.iter().find(|droplet| droplet.id == 105).unwrap();
-        assert!((calm.place[2] - level(105)).abs() < 0.3);
+        assert!((calm.position[2] - level(105)).abs() < 0.3);
     }
 
     #[test]

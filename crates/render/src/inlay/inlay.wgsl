@@ -1,4 +1,4 @@
-// Lays a picture into its place in a window, pixel by pixel. What is the same for a whole pass is said when the pipeline is made:
+// Lays a picture into its part of a window, pixel by pixel. What is the same for a whole pass is said when the pipeline is made:
 // software in place of a GPU would compute both sides of a choice.
 #import declared
 #import press
@@ -16,7 +16,7 @@ struct Corner {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Corner {
-    // One triangle that covers the place.
+    // One triangle that covers the part.
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));
     return Corner(vec4f(4.0 * corner - 1.0, 0.0, 1.0), vec2f(2.0 * corner.x, 1.0 - 2.0 * corner.y));
 }

@@ -52,8 +52,8 @@ impl Axes {
 
     fn axis_on_page(&self, page: &Sheet<'_>, axis: usize) -> Option<AxisOnPage> {
         let [start, end] = self.edge(page, axis)?;
-        let [one, other] = [page.place(start)?, page.place(end)?];
-        let middle = page.place(std::array::from_fn(|k| 0.5 * (self.from[k] + self.to[k])))?;
+        let [one, other] = [page.position(start)?, page.position(end)?];
+        let middle = page.position(std::array::from_fn(|k| 0.5 * (self.from[k] + self.to[k])))?;
         let long = (other[0] - one[0]).hypot(other[1] - one[1]);
         if long < STEP {
             return None;
@@ -69,7 +69,7 @@ impl Axes {
         for value in ticks::multiples(low, high, step) {
             let mut point = start;
             point[axis] = value * factor;
-            let Some(at) = page.place(point) else { continue };
+            let Some(at) = page.position(point) else { continue };
             let away = |far: f64| [at[0] + far * out[0], at[1] + far * out[1]];
             let text = label(value, step);
             widest = widest.max(LETTER * text.chars().count() as f64);
@@ -102,9 +102,10 @@ impl Axes {
         if flat {
             return edges.clone().find(|edge| edge[0] == self.from);
         }
-        let left = |edge: &[[f64; 3]; 2]| page.place(edge[0]).map_or(f64::INFINITY, |place| place[0]);
-        let below =
-            |edge: &[[f64; 3]; 2]| edge.iter().filter_map(|end| page.place(*end)).map(|place| place[1]).sum::<f64>();
+        let left = |edge: &[[f64; 3]; 2]| page.position(edge[0]).map_or(f64::INFINITY, |position| position[0]);
+        let below = |edge: &[[f64; 3]; 2]| {
+            edge.iter().filter_map(|end| page.position(*end)).map(|position| position[1]).sum::<f64>()
+        };
         match axis {
             2 => edges.min_by(|a, b| left(a).total_cmp(&left(b))),
             _ => edges.filter(is_low).max_by(|a, b| below(a).total_cmp(&below(b))),

@@ -42,7 +42,7 @@ pub(super) fn draw(page: &mut Page<'_>, borders: &[Border]) {
     }
     for border in borders {
         if let Border::Line { style, ends, outwards } = border {
-            let Some(ends) = places(page, *ends) else { continue };
+            let Some(ends) = positions(page, *ends) else { continue };
             let moved = ends.map(|end| beyond(end, *outwards, style.half_width()));
             page.svg.line(moved[0], moved[1], style.class());
         }
@@ -52,7 +52,7 @@ pub(super) fn draw(page: &mut Page<'_>, borders: &[Border]) {
 fn draw_piston(page: &mut Page<'_>, ends: [[f64; 2]; 2], outwards: [f64; 2], rod: f64) {
     let middle: [f64; 2] = std::array::from_fn(|k| 0.5 * (ends[0][k] + ends[1][k]));
     let tip = std::array::from_fn(|k| middle[k] + rod * outwards[k]);
-    let (Some(ends), Some([middle, tip])) = (places(page, ends), places(page, [middle, tip])) else { return };
+    let (Some(ends), Some([middle, tip])) = (positions(page, ends), positions(page, [middle, tip])) else { return };
     let block = |[one, other]: [[f64; 2]; 2], depth: f64| {
         [one, other, beyond(other, outwards, depth), beyond(one, outwards, depth)]
     };
@@ -66,24 +66,24 @@ fn draw_piston(page: &mut Page<'_>, ends: [[f64; 2]; 2], outwards: [f64; 2], rod
 /// Draws a mark.
 pub(super) fn draw_mark(page: &mut Page<'_>, mark: &Mark) {
     match mark {
-        Mark::Start(place) => {
-            if let Some(place) = page.place(*place) {
-                page.svg.circle(place, MARK, "trajectory-start");
+        Mark::Start(position) => {
+            if let Some(position) = page.position(*position) {
+                page.svg.circle(position, MARK, "trajectory-start");
             }
         }
-        Mark::Ring(place, radius) => {
-            let beside = [place[0] + radius, place[1], place[2]];
-            if let (Some(place), Some(beside)) = (page.place(*place), page.place(beside)) {
-                let radius = (beside[0] - place[0]).hypot(beside[1] - place[1]);
-                page.svg.circle(place, (radius + RING).max(MARK), "trajectory-end");
+        Mark::Ring(position, radius) => {
+            let beside = [position[0] + radius, position[1], position[2]];
+            if let (Some(position), Some(beside)) = (page.position(*position), page.position(beside)) {
+                let radius = (beside[0] - position[0]).hypot(beside[1] - position[1]);
+                page.svg.circle(position, (radius + RING).max(MARK), "trajectory-end");
             }
         }
     }
 }
 
 /// Two points, m, on the page.
-fn places(page: &Page<'_>, ends: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
-    let [one, other] = ends.map(|[x, y]| page.place([x, y, 0.0]));
+fn positions(page: &Page<'_>, ends: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+    let [one, other] = ends.map(|[x, y]| page.position([x, y, 0.0]));
     Some([one?, other?])
 }
 

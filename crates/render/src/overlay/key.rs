@@ -1,6 +1,6 @@
 //! The legend of colours and lines.
 
-use super::{Axes, HEIGHT, Key, KeyPlace, LETTER, LineStyle, MARGIN, Overlay, Page};
+use super::{Axes, HEIGHT, Key, KeyPosition, LETTER, LineStyle, MARGIN, Overlay, Page};
 use crate::ColourTable;
 use corpuscle_drawing::bars::value_bar;
 use corpuscle_drawing::colour::hex;
@@ -36,10 +36,10 @@ impl Overlay {
         if entries.is_empty() {
             return;
         }
-        let corner = |pick: fn(&Axes) -> [f64; 3]| self.axes.as_ref().and_then(|axes| page.place(pick(axes)));
-        match (self.key_place, corner(|axes| axes.from), corner(|axes| axes.to)) {
-            (KeyPlace::Beside, _, Some([right, top])) => draw_column(page, &entries, [right + BESIDE, top]),
-            (KeyPlace::Below, Some([left, bottom]), _) => draw_row(page, &entries, [left, bottom + BELOW]),
+        let corner = |pick: fn(&Axes) -> [f64; 3]| self.axes.as_ref().and_then(|axes| page.position(pick(axes)));
+        match (self.key_position, corner(|axes| axes.from), corner(|axes| axes.to)) {
+            (KeyPosition::Beside, _, Some([right, top])) => draw_column(page, &entries, [right + BESIDE, top]),
+            (KeyPosition::Below, Some([left, bottom]), _) => draw_row(page, &entries, [left, bottom + BELOW]),
             _ => draw_corner(page, &entries),
         }
     }
@@ -77,15 +77,15 @@ fn draw_row(page: &mut Page<'_>, entries: &[Entry<'_>], [left, top]: [f64; 2]) {
 /// Row and begin of entries of these widths in rows of a length.
 fn rows(widths: &[f64], length: f64) -> Vec<(usize, f64)> {
     let (mut row, mut from) = (0, 0.0);
-    let place = |width: &f64| {
+    let position = |width: &f64| {
         if from > 0.0 && from + width > length {
             (row, from) = (row + 1, 0.0);
         }
-        let place = (row, from);
+        let position = (row, from);
         from += width + GAP;
-        place
+        position
     };
-    widths.iter().map(place).collect()
+    widths.iter().map(position).collect()
 }
 
 /// Width of a name.
@@ -121,10 +121,10 @@ impl Entry<'_> {
         match self {
             Self::Values(label, table) => {
                 page.svg.text([left, top + 13.0], Anchor::Start, "over", label);
-                let place = if in_a_row { [left + wide(label) + 6.0, top + 2.0] } else { [left, top + 21.0] };
+                let position = if in_a_row { [left + wide(label) + 6.0, top + 2.0] } else { [left, top + 21.0] };
                 let range = [f64::from(table.low), f64::from(table.high)];
                 let colour = |part: f64| table.colour(table.low + (table.high - table.low) * part as f32);
-                value_bar(&mut page.svg, range, colour, place, BAR);
+                value_bar(&mut page.svg, range, colour, position, BAR);
             }
             Self::Kind(name, colour) => {
                 page.svg.circles([([left + 7.0, top + 8.0], 7.0)], &hex(*colour), "balls");

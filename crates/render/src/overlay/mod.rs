@@ -8,9 +8,10 @@ mod north;
 pub use axes::AxisOnPage;
 
 use crate::{Camera, ColourTable, Lens, RenderError, Stage};
-use corpuscle_drawing::bars::{prefix, scale_bar, scale_bar_width};
+use corpuscle_drawing::bars::{scale_bar, scale_bar_width};
 use corpuscle_drawing::png::svg_to_pixels;
 use corpuscle_drawing::svg::{Anchor, Figure, Svg};
+use corpuscle_drawing::text::prefix;
 use corpuscle_gpu::Image;
 
 /// Height of a picture in CSS pixels: letters keep their part of it.
@@ -35,7 +36,7 @@ pub struct Overlay {
     /// What colours mean.
     pub key: Option<Key>,
     /// Position of the legend.
-    pub key_place: KeyPlace,
+    pub key_position: KeyPosition,
     /// Legend of the lines, drawn with that of the colours.
     pub lines: Vec<(LineStyle, String)>,
     /// A remark, in small letters in the lower right corner.
@@ -69,7 +70,7 @@ pub enum Key {
 
 /// Position of the legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum KeyPlace {
+pub enum KeyPosition {
     /// In the lower left corner of the picture.
     #[default]
     Corner,
@@ -158,7 +159,7 @@ struct Sheet<'a> {
 
 impl Sheet<'_> {
     /// Position on the page of a point of the world, m.
-    fn place(&self, point: [f64; 3]) -> Option<[f64; 2]> {
+    fn position(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         let [width, height] = self.size;
         let [x, y] = self.camera.project(self.stage, width / height, point)?;
         Some([x * width, y * height])
@@ -167,8 +168,8 @@ impl Sheet<'_> {
 
 impl Page<'_> {
     /// Position on the page of a point of the world, m.
-    fn place(&self, point: [f64; 3]) -> Option<[f64; 2]> {
-        Sheet { size: self.size, stage: self.stage, camera: self.camera }.place(point)
+    fn position(&self, point: [f64; 3]) -> Option<[f64; 2]> {
+        Sheet { size: self.size, stage: self.stage, camera: self.camera }.position(point)
     }
 }
 
@@ -195,8 +196,8 @@ impl Overlay {
         page.svg.text([page.size[0] - MARGIN, MARGIN + 18.0], Anchor::End, "over-title", &self.time);
         borders::draw(&mut page, &self.borders);
         self.marks.iter().for_each(|mark| borders::draw_mark(&mut page, mark));
-        for (place, label) in &self.labels {
-            if let Some([x, y]) = page.place(*place) {
+        for (position, label) in &self.labels {
+            if let Some([x, y]) = page.position(*position) {
                 page.svg.text([x, y + 5.0], Anchor::Middle, "over", label);
             }
         }
@@ -237,11 +238,11 @@ impl Overlay {
         let Some(inset) = &self.inset else { return };
         let [width, height] = inset.size().map(|length| length + 2.0 * PADDING);
         let has_legend = self.key.is_some() || !self.lines.is_empty();
-        let corner = |axes: &Axes| Some([page.place(axes.to)?[0] - PADDING, page.place(axes.from)?[1] - PADDING]);
-        let [left, bottom] = match (self.key_place, self.axes.as_ref().and_then(corner)) {
+        let corner = |axes: &Axes| Some([page.position(axes.to)?[0] - PADDING, page.position(axes.from)?[1] - PADDING]);
+        let [left, bottom] = match (self.key_position, self.axes.as_ref().and_then(corner)) {
             // Legend and numbers stand round the axes, so it lies within them.
-            (KeyPlace::Below | KeyPlace::Beside, Some([right, bottom])) => [right - width, bottom],
-            (KeyPlace::Corner, _) if has_legend => [page.size[0] - MARGIN - width, bottom_right],
+            (KeyPosition::Below | KeyPosition::Beside, Some([right, bottom])) => [right - width, bottom],
+            (KeyPosition::Corner, _) if has_legend => [page.size[0] - MARGIN - width, bottom_right],
             _ => [MARGIN, HEIGHT - MARGIN],
         };
         page.svg.rectangle([left, bottom - height], [width, height], "inset");

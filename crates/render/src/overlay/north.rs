@@ -32,8 +32,8 @@ pub(super) fn draw(page: &mut Page<'_>) {
 fn direction(page: &Page<'_>) -> Option<[f64; 2]> {
     let centre: [f64; 3] = page.stage.centre().into();
     let step = STEP * page.stage.unit();
-    let from = page.place(centre)?;
-    let to = page.place([centre[0], centre[1] + step, centre[2]])?;
+    let from = page.position(centre)?;
+    let to = page.position([centre[0], centre[1] + step, centre[2]])?;
     let (right, down) = (to[0] - from[0], to[1] - from[1]);
     let length = right.hypot(down);
     (length > 0.0).then(|| [right / length, down / length])

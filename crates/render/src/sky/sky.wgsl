@@ -20,7 +20,7 @@ fn window(direction: vec3f) -> vec3f {
 // How far what is out of focus is spread, radians; and how far the street's end lies below the room.
 const OUT_OF_FOCUS: f32 = 0.016;
 const STREET_BELOW: f32 = 0.2;
-// Lights round the circle, where there is one in each place.
+// Lights round the circle, where there is one at each position.
 const LIGHTS: f32 = 150.0;
 
 // A row of houses in a street, out of focus: colour, and how much of what is behind it hides. `turn` is a part of the circle from 0 to 1; this part of

@@ -8,7 +8,7 @@
 
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {
-    let to_eye = towards_eye(corner.place);
+    let to_eye = towards_eye(corner.position);
     let normal = normalize(corner.normal);
     let facing = dot(normal, to_eye);
     if facing <= 0.0 {
@@ -16,7 +16,7 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     }
     // Bent towards the normal, then on for a slab's thickness; seen where that meets the picture.
     let bent = refract(-to_eye, normal, 1.0 / 1.5);
-    let shifted = corner.place + (bent + to_eye) * 0.03;
+    let shifted = corner.position + (bent + to_eye) * 0.03;
     let clip = view.clip_from_world * vec4f(shifted, 1.0);
     let uv = clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5;
     let seen = textureSampleLevel(behind, behind_sampler, clamp(uv, vec2f(0.0), vec2f(1.0)), 0.0).rgb;

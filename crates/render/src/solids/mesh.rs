@@ -64,7 +64,8 @@ impl<'a> Grid<'a> {
         let from = std::array::from_fn(|k| low[k] - 1.5 * cell[k]);
         let count = inner.map(|cells| cells + 4);
         let mut grid = Self { shape, from, cell, count, nodes: Vec::new() };
-        grid.nodes = (0..count.iter().product()).map(|index| (shape.distance)(grid.place(grid.node(index)))).collect();
+        grid.nodes =
+            (0..count.iter().product()).map(|index| (shape.distance)(grid.position(grid.node(index)))).collect();
         grid
     }
 
@@ -77,7 +78,7 @@ impl<'a> Grid<'a> {
         (z * self.count[1] + y) * self.count[0] + x
     }
 
-    fn place(&self, node: [usize; 3]) -> Point {
+    fn position(&self, node: [usize; 3]) -> Point {
         std::array::from_fn(|k| self.from[k] + self.cell[k] * node[k] as f64)
     }
 
@@ -109,7 +110,7 @@ impl<'a> Grid<'a> {
                 if inside_first == (self.nodes[self.index(next)] < 0.0) {
                     continue;
                 }
-                let at = self.crossing(self.place(node), axis, inside_first);
+                let at = self.crossing(self.position(node), axis, inside_first);
                 let plane = (at, self.normal_at(at));
                 self.cells_round(&(node, axis))
                     .into_iter()
@@ -145,7 +146,7 @@ impl<'a> Grid<'a> {
                 let off: f64 = (0..3).map(|k| normal[k] * (at[k] - point[k])).sum();
                 (0..3).for_each(|k| push[k] -= off * normal[k]);
             }
-            let low = self.place(cell);
+            let low = self.position(cell);
             at = std::array::from_fn(|k| (at[k] + push[k] / count).clamp(low[k], low[k] + self.cell[k]));
         }
         at
@@ -206,9 +207,9 @@ mod tests {
         let ball = solid([[-1.0; 3], [1.0; 3]], |at| at.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0);
         let corners = mesh(&ball);
         assert!((volume(&corners) / 4.18879 - 1.0).abs() < 0.01, "{}", volume(&corners));
-        for (place, normal) in corners {
-            let along: f64 = (0..3).map(|k| place[k] * normal[k]).sum();
-            assert!(along > 0.995, "{place:?} {normal:?}");
+        for (position, normal) in corners {
+            let along: f64 = (0..3).map(|k| position[k] * normal[k]).sum();
+            assert!(along > 0.995, "{position:?} {normal:?}");
         }
     }
 }

@@ -89,10 +89,10 @@ impl Solid {
     /// A solid from the corners of its triangles, three by three: position, m, and unit vector outwards.
     pub fn of_corners(renderer: &Renderer, stage: &Stage, corners: &[([f64; 3], [f64; 3])], style: SolidStyle) -> Self {
         let gpu = renderer.gpu();
-        let vertex = |(place, normal): &([f64; 3], [f64; 3])| {
-            let [x, y, z] = stage.place(*place).into();
+        let vertex = |(position, normal): &([f64; 3], [f64; 3])| {
+            let [x, y, z] = stage.position(*position).into();
             let [nx, ny, nz] = normal.map(|part| part as f32);
-            Vertex { place: [x, y, z, 1.0], normal: [nx, ny, nz, 0.0] }
+            Vertex { position: [x, y, z, 1.0], normal: [nx, ny, nz, 0.0] }
         };
         let vertices: Vec<Vertex> = corners.iter().map(vertex).collect();
         let is_glass = matches!(style, SolidStyle::Glass(_));

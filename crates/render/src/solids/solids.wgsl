@@ -11,10 +11,10 @@ const HALF: vec2f = vec2f(0.21, 0.25);
 // Light that a room gives back through its window.
 const PANE: vec3f = vec3f(0.03, 0.04, 0.05);
 
-// How much of a pixel at a place on a wall a window covers.
-fn window_at(place: vec3f, normal: vec3f) -> f32 {
-    let along = vec2f(dot(place.xy, normalize(vec2f(-normal.y, normal.x))), place.z) * view.frame.z / FIELD;
-    let pixel = pixel_at(place) * view.frame.z / FIELD;
+// How much of a pixel at a position on a wall a window covers.
+fn window_at(position: vec3f, normal: vec3f) -> f32 {
+    let along = vec2f(dot(position.xy, normalize(vec2f(-normal.y, normal.x))), position.z) * view.frame.z / FIELD;
+    let pixel = pixel_at(position) * view.frame.z / FIELD;
     // Smaller than some pixels they are a grey wall.
     let seen = clamp(0.5 / max(pixel.x, pixel.y) / 2.5 - 0.6, 0.0, 1.0);
     let away = abs(fract(along) - MIDDLE) - HALF;
@@ -24,19 +24,19 @@ fn window_at(place: vec3f, normal: vec3f) -> f32 {
 
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {
-    let to_eye = towards_eye(corner.place);
+    let to_eye = towards_eye(corner.position);
     var normal = normalize(corner.normal);
     normal = select(-normal, normal, dot(normal, to_eye) > 0.0);
-    let shine = sunshine(corner.place, normal, corner.clip.xy);
+    let shine = sunshine(corner.position, normal, corner.clip.xy);
     let is_building = style.roof.w > 0.5;
     let is_roof = is_building & (normal.z > 0.5);
     let colour = select(style.colour.rgb, style.roof.rgb, is_roof);
     var light = coated(colour, normal, to_eye, shine, style.gloss.x);
     if is_building & (abs(normal.z) < 0.3) {
         let mirror = surroundings(reflect(-to_eye, normal)) * mirrored(dot(normal, to_eye), 0.08);
-        light = mix(light, PANE + mirror, window_at(corner.place, normal));
+        light = mix(light, PANE + mirror, window_at(corner.position, normal));
     }
-    return vec4f(hazed(light, corner.place), 1.0);
+    return vec4f(hazed(light, corner.position), 1.0);
 }
 
 @fragment

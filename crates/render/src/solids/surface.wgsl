@@ -3,11 +3,11 @@
 
 struct Corner {
     @builtin(position) clip: vec4f,
-    @location(0) place: vec3f,
+    @location(0) position: vec3f,
     @location(1) normal: vec3f,
 }
 
 @vertex
 fn vertex(vertex: Vertex) -> Corner {
-    return Corner(view.clip_from_world * vec4f(vertex.place.xyz, 1.0), vertex.place.xyz, vertex.normal.xyz);
+    return Corner(view.clip_from_world * vec4f(vertex.position.xyz, 1.0), vertex.position.xyz, vertex.normal.xyz);
 }

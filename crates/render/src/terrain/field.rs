@@ -23,9 +23,9 @@ impl HeightField {
     ) -> Self {
         let nodes = nodes.map(|count| count.max(2));
         let cell = [(east - west) / (nodes[0] - 1) as f64, (north - south) / (nodes[1] - 1) as f64];
-        let place = |index: usize| [index % nodes[0], index / nodes[0]];
+        let node = |index: usize| [index % nodes[0], index / nodes[0]];
         let heights = (0..nodes[0] * nodes[1])
-            .map(place)
+            .map(node)
             .map(|[column, row]| height(west + column as f64 * cell[0], south + row as f64 * cell[1]) as f32);
         Self { origin: [west, south], cell, nodes, heights: heights.collect() }
     }
@@ -37,11 +37,11 @@ impl HeightField {
         if low <= high { [f64::from(low), f64::from(high)] } else { [0.0, 0.0] }
     }
 
-    /// Rise `[eastwards, northwards]` of the quad round a place, m per m; of the nearest for places outside, and level where there
+    /// Rise `[eastwards, northwards]` of the quad round a position, m per m; of the nearest for positions outside, and level where there
     /// is no ground.
-    pub fn slope_at(&self, place: [f64; 2]) -> [f64; 2] {
+    pub fn slope_at(&self, position: [f64; 2]) -> [f64; 2] {
         let quad = [0, 1].map(|k| {
-            let at = (place[k] - self.origin[k]) / self.cell[k];
+            let at = (position[k] - self.origin[k]) / self.cell[k];
             (at.max(0.0) as usize).min(self.nodes[k] - 2)
         });
         let node =
@@ -52,7 +52,7 @@ impl HeightField {
     }
 
     /// Where a node is, m.
-    pub fn place(&self, index: usize) -> [f64; 2] {
+    pub fn position(&self, index: usize) -> [f64; 2] {
         let at = [index % self.nodes[0], index / self.nodes[0]];
         [0, 1].map(|k| self.origin[k] + self.cell[k] * at[k] as f64)
     }
@@ -181,9 +181,9 @@ mod tests {
             assert!((east - 0.5).abs() < 1e-5 && (north + 0.25).abs() < 1e-5, "{index}: {east} {north}");
         }
         assert_eq!(field.range(), [-6.25, 18.75]);
-        for place in [[1e6 + 3.0, 7.0], [1e6 + 40.0, 25.0], [0.0, 1e9]] {
-            let [east, north] = field.slope_at(place);
-            assert!((east - 0.5).abs() < 1e-5 && (north + 0.25).abs() < 1e-5, "{place:?}: {east} {north}");
+        for position in [[1e6 + 3.0, 7.0], [1e6 + 40.0, 25.0], [0.0, 1e9]] {
+            let [east, north] = field.slope_at(position);
+            assert!((east - 0.5).abs() < 1e-5 && (north + 0.25).abs() < 1e-5, "{position:?}: {east} {north}");
         }
     }
 }

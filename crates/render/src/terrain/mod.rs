@@ -7,14 +7,13 @@ mod walls;
 
 pub use field::HeightField;
 pub use natural::natural_colours;
-pub(crate) use tiles::QUADS as QUADS_OF_TILE;
 
 use crate::buffer::{indices, instances, uniform};
 use crate::pipeline::PipelineDescriptor;
 use crate::shaders::Shader;
-use crate::shared::Ground;
+use crate::shared::{Ground, TileInstance, buffer_layout};
 use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders, static_layer};
-use corpuscle_gpu::{Gpu, GroupLayout, Image, texture_2d, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, Image, SharedStruct, texture_2d, wgpu};
 use half::f16;
 use rayon::prelude::*;
 use walls::Walls;
@@ -60,19 +59,16 @@ impl Terrain {
         let gpu = renderer.gpu();
         let shader = ("terrain", include_str!("terrain.wgsl"));
         let layout = shaders::layout(gpu, "terrain", 1, &[shader]);
-        let attributes = wgpu::vertex_attr_array![0 => Uint32x4];
+        let tile = TileInstance::layout();
+        let attributes = tile.vertex_attributes();
         let descriptor = PipelineDescriptor {
             label: "terrain",
             shader: &Shader::new(shader.0, shader.1),
             groups: &[renderer.view_layout(), &layout],
-            buffers: &[wgpu::VertexBufferLayout {
-                array_stride: 16,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &attributes,
-            }],
+            buffers: &[buffer_layout(&tile, wgpu::VertexStepMode::Instance, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
-        let [x, y, _] = stage.place([field.origin[0], field.origin[1], 0.0]).into();
+        let [x, y, _] = stage.position([field.origin[0], field.origin[1], 0.0]).into();
         let cell = field.cell.map(|length| stage.length(length));
         let settings = Ground {
             origin: [x, y, 0.0, 0.0],
@@ -193,8 +189,8 @@ fn upload(
 /// Heights in stage coordinates; where there are none those nearby.
 fn upload_heights(gpu: &Gpu, stage: &Stage, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
     let [x, y, _] = stage.centre().into();
-    let place = |height: f32| stage.place([x, y, f64::from(height)]).z;
-    let heights: Vec<f32> = field.filled().into_iter().map(place).collect();
+    let on_stage = |height: f32| stage.position([x, y, f64::from(height)]).z;
+    let heights: Vec<f32> = field.filled().into_iter().map(on_stage).collect();
     upload(gpu, "heights", field.size(), wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&heights))
 }
 

@@ -63,7 +63,7 @@ fn bumps(x: f32, y: f32) -> f32 {
     south + (north - south) * up
 }
 
-/// A number from 0 to 1 for a place (PCG hash: Jarzynski & Olano, Journal of Computer Graphics Techniques 9, 2020, 3).
+/// A number from 0 to 1 for a position (PCG hash: Jarzynski & Olano, Journal of Computer Graphics Techniques 9, 2020, 3).
 fn scattered(x: u32, y: u32) -> f32 {
     let state = x.wrapping_mul(747_796_405).wrapping_add(y.wrapping_mul(2_891_336_453)).wrapping_add(1);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);

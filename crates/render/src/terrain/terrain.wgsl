@@ -10,12 +10,12 @@
 
 struct Corner {
     @builtin(position) clip: vec4f,
-    @location(0) place: vec3f,
+    @location(0) position: vec3f,
     @location(1) uv: vec2f,
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) index: u32, @location(0) tile: vec4u) -> Corner {
+fn vertex(@builtin(vertex_index) index: u32, tile: TileInstance) -> Corner {
     let side = QUADS + 1u;
     var at = vec2u(index % side, index / side);
     var sunk = 0.0;
@@ -24,15 +24,15 @@ fn vertex(@builtin(vertex_index) index: u32, @location(0) tile: vec4u) -> Corner
         let along = (index - side * side) % side;
         let edge = (index - side * side) / side;
         at = select(vec2u(along, select(0u, QUADS, edge == 1u)), vec2u(select(0u, QUADS, edge == 3u), along), edge >= 2u);
-        sunk = select(1.0, 0.0, tile.z == 1u);
+        sunk = select(1.0, 0.0, tile.stride == 1u);
     }
-    let node = min(tile.xy + at * tile.z, ground.nodes.xy - 1u);
+    let node = min(tile.first + at * tile.stride, ground.nodes.xy - 1u);
     let height = textureLoad(heights, node, 0).r;
-    let skirt = sunk * f32(tile.z) * 1.5 * max(ground.cell.x, ground.cell.y);
-    let place = vec3f(ground.origin.xy + vec2f(node) * ground.cell.xy, height - skirt);
+    let skirt = sunk * f32(tile.stride) * 1.5 * max(ground.cell.x, ground.cell.y);
+    let position = vec3f(ground.origin.xy + vec2f(node) * ground.cell.xy, height - skirt);
     // Middles of texels are the nodes.
     let uv = (vec2f(node) + 0.5) / vec2f(ground.nodes.xy);
-    return Corner(view.clip_from_world * vec4f(place, 1.0), place, uv);
+    return Corner(view.clip_from_world * vec4f(position, 1.0), position, uv);
 }
 
 // Steeper than this no ground is: a quad whose corners have no height is marked so.
@@ -50,11 +50,11 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     }
     let smooth_normal = normalize(vec3f(-slope, 1.0));
     if ground.cell.w == 0.0 {
-        return vec4f(hazed(matt(found.rgb, smooth_normal, sunshine(corner.place, smooth_normal, corner.clip.xy)), corner.place), 1.0);
+        return vec4f(hazed(matt(found.rgb, smooth_normal, sunshine(corner.position, smooth_normal, corner.clip.xy)), corner.position), 1.0);
     }
-    let own = natural(corner.place, found.rgb, length(slope), smooth_normal);
-    let shine = sunshine(corner.place, smooth_normal, corner.clip.xy);
-    return vec4f(hazed(matt(own.colour, own.normal, shine), corner.place), 1.0);
+    let own = natural(corner.position, found.rgb, length(slope), smooth_normal);
+    let shine = sunshine(corner.position, smooth_normal, corner.clip.xy);
+    return vec4f(hazed(matt(own.colour, own.normal, shine), corner.position), 1.0);
 }
 
 // Bare rock and earth, linear: the grain within cells, whose own colours are those of `natural.rs`.
@@ -66,15 +66,15 @@ const ROCKY_SLOPES: vec2f = vec2f(0.5, 1.0);
 const OCTAVES: i32 = 6;
 const LONGEST: f32 = 6.0;
 
-// What the ground is made of at a place.
+// What the ground is made of at a position.
 struct Matter {
     colour: vec3f,
     normal: vec3f,
 }
 
 // Natural ground of a colour: patches of another green and bare earth, rock where it is steep, and grain as fine as pixels show it.
-fn natural(place: vec3f, colour: vec3f, steepness: f32, smooth_normal: vec3f) -> Matter {
-    let pixel = pixel_at(place);
+fn natural(position: vec3f, colour: vec3f, steepness: f32, smooth_normal: vec3f) -> Matter {
+    let pixel = pixel_at(position);
     var length = LONGEST * ground.cell.x;
     var tilt = vec3f(0.0);
     // Of long and of short octaves, about 0.
@@ -83,7 +83,7 @@ fn natural(place: vec3f, colour: vec3f, steepness: f32, smooth_normal: vec3f) ->
     for (var octave = 0; octave < OCTAVES; octave++) {
         let seen = clamp(length / pixel / 3.0 - 0.6, 0.0, 1.0);
         if seen > 0.0 {
-            let found = bumps_in_space((place - vec3f(ground.origin.xy, 0.0)) / length + 17.0 * f32(octave));
+            let found = bumps_in_space((position - vec3f(ground.origin.xy, 0.0)) / length + 17.0 * f32(octave));
             tilt += seen * found.xyz;
             let about = seen * (found.w - 0.5);
             patches += select(0.0, about, octave < 3);
@@ -109,7 +109,7 @@ fn fragment_plain(corner: Corner) -> @location(0) vec4f {
     if found.a < 0.5 || slope.x > NO_GROUND {
         discard;
     }
-    return vec4f(hazed(matt(found.rgb, normalize(vec3f(-slope, 1.0)), 1.0), corner.place), 1.0);
+    return vec4f(hazed(matt(found.rgb, normalize(vec3f(-slope, 1.0)), 1.0), corner.position), 1.0);
 }
 
 @fragment

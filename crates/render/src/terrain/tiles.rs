@@ -4,19 +4,15 @@
 //! samples. So the number of quads follows the picture, not the terrain.
 
 use super::HeightField;
+use crate::shared::{QUADS, TileInstance};
 use crate::{Camera, Lens, Stage};
 use glam::DVec3;
 
-/// Quads along a side of a tile; as in `terrain.wgsl`.
-pub(crate) const QUADS: u32 = 64;
 /// Indices of the triangles of a tile with its skirt.
 pub(super) const INDICES: u32 = 6 * QUADS * QUADS + 4 * 6 * QUADS;
 /// A quad may be seen so large, samples; and one of a tile at the border, where the upright sides end at the finest nodes.
 const LARGEST: f64 = 4.0;
 const LARGEST_AT_BORDER: f64 = 1.5;
-
-/// A tile: its first node, the distance of its nodes, and 0.
-pub(super) type Tile = [u32; 4];
 
 /// Corners of the triangles of a tile: its quads, then those of the skirt round it.
 pub(super) fn indices() -> Vec<u32> {
@@ -44,19 +40,19 @@ pub(super) fn indices() -> Vec<u32> {
 }
 
 /// The tiles for a picture of `size` samples.
-pub(super) fn choose(field: &HeightField, stage: &Stage, camera: &Camera, size: [u32; 2]) -> Vec<Tile> {
+pub(super) fn choose(field: &HeightField, stage: &Stage, camera: &Camera, size: [u32; 2]) -> Vec<TileInstance> {
     let quads = field.nodes.map(|count| count as u32 - 1);
     let mut stride = 1;
     while stride * QUADS < quads[0].max(quads[1]) {
         stride *= 2;
     }
     let mut chosen = Vec::new();
-    let mut open = vec![[0, 0, stride, 0]];
-    while let Some([column, row, stride, _]) = open.pop() {
+    let mut open = vec![TileInstance { first: [0, 0], stride, unused: 0 }];
+    while let Some(tile) = open.pop() {
+        let TileInstance { first: [column, row], stride, .. } = tile;
         if column >= quads[0] || row >= quads[1] {
             continue;
         }
-        let tile = [column, row, stride, 0];
         let is_border =
             column == 0 || row == 0 || column + QUADS * stride >= quads[0] || row + QUADS * stride >= quads[1];
         let largest = if is_border { LARGEST_AT_BORDER } else { LARGEST };
@@ -65,9 +61,8 @@ pub(super) fn choose(field: &HeightField, stage: &Stage, camera: &Camera, size: 
         } else {
             let half = stride / 2;
             let middle = half * QUADS;
-            open.extend(
-                [[0, 0], [middle, 0], [0, middle], [middle, middle]].map(|[x, y]| [column + x, row + y, half, 0]),
-            );
+            let quarter = |[x, y]: [u32; 2]| TileInstance { first: [column + x, row + y], stride: half, unused: 0 };
+            open.extend([[0, 0], [middle, 0], [0, middle], [middle, middle]].map(quarter));
         }
     }
     chosen
@@ -79,7 +74,7 @@ fn seen_size(
     stage: &Stage,
     camera: &Camera,
     size: [u32; 2],
-    [column, row, stride, _]: Tile,
+    TileInstance { first: [column, row], stride, .. }: TileInstance,
 ) -> f64 {
     let length = field.cell[0].max(field.cell[1]) * f64::from(stride);
     match camera.lens {
@@ -114,7 +109,7 @@ mod tests {
         let stage = Stage::new([0.0; 3], [300.0, 300.0, 1.0]);
         let camera = Camera::orbit(&stage, [0.3, 0.2], 0.6, 1.5, 0.0);
         let mut covered = vec![0_u8; 300 * 300];
-        for [column, row, stride, _] in choose(&field, &stage, &camera, [600, 400]) {
+        for TileInstance { first: [column, row], stride, .. } in choose(&field, &stage, &camera, [600, 400]) {
             for y in row..(row + 64 * stride).min(300) {
                 for x in column..(column + 64 * stride).min(300) {
                     covered[(y * 300 + x) as usize] += 1;

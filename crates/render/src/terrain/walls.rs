@@ -60,11 +60,11 @@ fn vertices(stage: &Stage, field: &HeightField, base: f64) -> Vec<Vertex> {
     let mut all = Vec::new();
     for Edge { nodes: [a, b], outwards: [x, y] } in field.edges() {
         let vertex = |index: usize, is_low: bool| {
-            let [east, north] = field.place(index);
+            let [east, north] = field.position(index);
             let height = f64::from(field.heights[index]);
-            let [px, py, pz] = stage.place([east, north, if is_low { base } else { height }]).into();
+            let [px, py, pz] = stage.position([east, north, if is_low { base } else { height }]).into();
             let deep = if is_low { stage.length(height - base) } else { 0.0 };
-            Vertex { place: [px, py, pz, deep], normal: [x, y, 0.0, 0.0] }
+            Vertex { position: [px, py, pz, deep], normal: [x, y, 0.0, 0.0] }
         };
         all.extend(
             [(a, false), (b, false), (a, true), (a, true), (b, false), (b, true)].map(|(node, low)| vertex(node, low)),

@@ -1,10 +1,10 @@
 //! From linear light to the bytes of a picture.
 
 use crate::buffer::uniform;
+use crate::formats::PICTURE_FORMAT;
 use crate::pipeline::PipelineDescriptor;
 use crate::shaders::Shader;
 use crate::shared::Tone as Settings;
-use crate::target::PICTURE_FORMAT;
 use crate::{Target, shaders};
 use corpuscle_gpu::{Gpu, GroupLayout, Image, texture_2d, wgpu};
 

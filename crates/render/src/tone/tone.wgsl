@@ -56,9 +56,9 @@ fn softened(pixel: vec2u) -> vec3f {
 
 // The picture at an offset from the middle of a pixel, mixed of the four pixels round it.
 fn between(pixel: vec2u, offset: vec2f) -> vec3f {
-    let place = vec2f(pixel) + offset;
-    let corner = floor(place);
-    let part = place - corner;
+    let position = vec2f(pixel) + offset;
+    let corner = floor(position);
+    let part = position - corner;
     let last = vec2f(textureDimensions(light)) - 1.0;
     let low = vec2u(clamp(corner, vec2f(0.0), last));
     let high = vec2u(clamp(corner + 1.0, vec2f(0.0), last));
@@ -82,8 +82,8 @@ fn without_background(pixel: vec2u) -> vec4f {
 }
 
 @fragment
-fn fragment(@builtin(position) place: vec4f) -> @location(0) vec4f {
-    let pixel = vec2u(place.xy);
+fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(position.xy);
     if tone.transparent == 1u {
         return without_background(pixel);
     }

@@ -64,7 +64,7 @@ impl TubePainter {
         let [r, g, b] = linear(style.colour);
         let colour = [r, g, b, f32::from(u8::from(style.shaded))];
         let end = |point: [f64; 3], last: f32| {
-            let [x, y, z] = stage.place(point).into();
+            let [x, y, z] = stage.position(point).into();
             [x, y, z, last]
         };
         let piece = |pair: &[[f64; 3]]| TubeInstance {

@@ -3,7 +3,7 @@
 
 struct Corner {
     @builtin(position) clip: vec4f,
-    @location(0) place: vec3f,
+    @location(0) position: vec3f,
     // One end and the radius.
     @location(1) @interpolate(flat) from_end: vec4f,
     // The other end; 1 with shading.
@@ -28,8 +28,8 @@ fn vertex(@builtin(vertex_index) index: u32, tube: TubeInstance) -> Corner {
     let up = cross(right, along);
     let bits = STRIP[index];
     let corner = vec3f(vec3u(bits & 1u, (bits >> 1u) & 1u, (bits >> 2u) & 1u)) * 2.0 - 1.0;
-    let place = middle + along * corner.x * (0.5 * long + radius) + radius * (right * corner.y + up * corner.z);
-    return Corner(view.clip_from_world * vec4f(place, 1.0), place, vec4f(from_end.xyz, radius), vec4f(to_end.xyz, tube.colour.w), tube.colour.rgb);
+    let position = middle + along * corner.x * (0.5 * long + radius) + radius * (right * corner.y + up * corner.z);
+    return Corner(view.clip_from_world * vec4f(position, 1.0), position, vec4f(from_end.xyz, radius), vec4f(to_end.xyz, tube.colour.w), tube.colour.rgb);
 }
 
 // Nearest crossing of a line, given from near the axis and across it, and a circle round it: offset and direction across,
@@ -47,24 +47,24 @@ fn crossing(offset: vec3f, direction: vec3f, radius: f32) -> f32 {
 // Where the line of sight meets the tube, a cylinder with round ends; nothing is drawn where it does not. All is reckoned from
 // the point of the axis nearest to the box's side: the radius is small against the length.
 fn hit(corner: Corner) -> vec3f {
-    let sight = ray_through(corner.place);
+    let sight = ray_through(corner.position);
     let radius = corner.from_end.w;
     let way = corner.to_end.xyz - corner.from_end.xyz;
     let long = length(way);
     let along = select(vec3f(1.0, 0.0, 0.0), way / max(long, 1e-20), long > 1e-9);
-    let start = clamp(dot(corner.place - corner.from_end.xyz, along), 0.0, long);
+    let start = clamp(dot(corner.position - corner.from_end.xyz, along), 0.0, long);
     let nearest = corner.from_end.xyz + start * along;
-    let offset = corner.place - nearest;
+    let offset = corner.position - nearest;
     let across = offset - dot(offset, along) * along;
     let distance = crossing(across, sight.direction - dot(sight.direction, along) * along, radius);
     let part = start + dot(offset + distance * sight.direction, along);
     if distance > -1e8 && part >= 0.0 && part <= long {
-        return corner.place + distance * sight.direction;
+        return corner.position + distance * sight.direction;
     }
     var found = -1e9;
     for (var end = 0; end < 2; end++) {
         let middle = select(corner.from_end.xyz, corner.to_end.xyz, end == 1);
-        let round = crossing(corner.place - middle, sight.direction, radius);
+        let round = crossing(corner.position - middle, sight.direction, radius);
         if round > -1e8 && (found < -1e8 || round < found) {
             found = round;
         }
@@ -72,20 +72,20 @@ fn hit(corner: Corner) -> vec3f {
     if found < -1e8 {
         discard;
     }
-    return corner.place + found * sight.direction;
+    return corner.position + found * sight.direction;
 }
 
 @fragment
 fn fragment(corner: Corner) -> Drawn {
-    let place = hit(corner);
+    let position = hit(corner);
     if is_paper() | (corner.to_end.w < 0.5) {
-        return Drawn(vec4f(corner.colour, 1.0), depth_at(place));
+        return Drawn(vec4f(corner.colour, 1.0), depth_at(position));
     }
     let way = corner.to_end.xyz - corner.from_end.xyz;
-    let part = clamp(dot(place - corner.from_end.xyz, way) / max(dot(way, way), 1e-20), 0.0, 1.0);
-    let normal = normalize(place - corner.from_end.xyz - part * way);
-    let shine = sunshine(place, normal, corner.clip.xy);
-    return Drawn(vec4f(coated(corner.colour, normal, towards_eye(place), shine, 0.6), 1.0), depth_at(place));
+    let part = clamp(dot(position - corner.from_end.xyz, way) / max(dot(way, way), 1e-20), 0.0, 1.0);
+    let normal = normalize(position - corner.from_end.xyz - part * way);
+    let shine = sunshine(position, normal, corner.clip.xy);
+    return Drawn(vec4f(coated(corner.colour, normal, towards_eye(position), shine, 0.6), 1.0), depth_at(position));
 }
 
 @fragment

@@ -69,8 +69,8 @@ fn wave(x: f64, y: f64) -> (f64, DVec2) {
 /// Where a line of sight meets the plane: height falls along it.
 fn plane_along(origin: DVec3, direction: DVec3) -> Option<f64> {
     let above = |t: f64| {
-        let place = origin + t * direction;
-        place.z - wave(place.x, place.y).0
+        let position = origin + t * direction;
+        position.z - wave(position.x, position.y).0
     };
     let (mut near, mut far) = (0.0, 10.0);
     if above(far) > 0.0 {
@@ -80,8 +80,8 @@ fn plane_along(origin: DVec3, direction: DVec3) -> Option<f64> {
         let middle = 0.5 * (near + far);
         if above(middle) > 0.0 { near = middle } else { far = middle }
     }
-    let place = origin + near * direction;
-    (place.x.abs() < HALF && place.y.abs() < HALF).then_some(near)
+    let position = origin + near * direction;
+    (position.x.abs() < HALF && position.y.abs() < HALF).then_some(near)
 }
 
 /// Where a line of sight meets the ball, and how far from its middle it passes.
@@ -183,11 +183,11 @@ fn exact_at(rays: &Rays, pixel: DVec2) -> Exact {
         return Exact::Surface((eye + hit * direction - MIDDLE).normalize());
     }
     let Some(hit) = plane else { return Exact::Nothing };
-    let place = eye + hit * direction;
-    if place.x.abs().max(place.y.abs()) > HALF - 5.0 * SPACING {
+    let position = eye + hit * direction;
+    if position.x.abs().max(position.y.abs()) > HALF - 5.0 * SPACING {
         return Exact::Nothing;
     }
-    let (_, slope) = wave(place.x, place.y);
+    let (_, slope) = wave(position.x, position.y);
     Exact::Surface(DVec3::new(-slope.x, -slope.y, 1.0).normalize())
 }
 
@@ -210,9 +210,9 @@ impl Rays {
         Self { eye: camera.eye, forward, right, up: right.cross(forward), pixel }
     }
 
-    /// Direction through a place in the picture, and its part along the middle line of sight.
-    fn through(&self, place: DVec2) -> (DVec3, f64) {
-        let [x, y] = [place.x - 0.5 * f64::from(SIZE[0]), 0.5 * f64::from(SIZE[1]) - place.y];
+    /// Direction through a position in the picture, and its part along the middle line of sight.
+    fn through(&self, position: DVec2) -> (DVec3, f64) {
+        let [x, y] = [position.x - 0.5 * f64::from(SIZE[0]), 0.5 * f64::from(SIZE[1]) - position.y];
         let direction = (self.forward + self.pixel * (x * self.right + y * self.up)).normalize();
         (direction, direction.dot(self.forward))
     }

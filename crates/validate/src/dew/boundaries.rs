@@ -57,8 +57,8 @@ struct Pressed {
 const RADIUS: f64 = 5.0 * D;
 
 fn pressed() -> [Pressed; 4] {
-    let solid = |shape: Result<Shape, corpuscle_solids::SolidError>, place: [f64; 3], turn: f64| {
-        let placed = |shape| Solid::of_shape(shape, Pose::new(place, [turn, 0.0, 0.0]));
+    let solid = |shape: Result<Shape, corpuscle_solids::SolidError>, position: [f64; 3], turn: f64| {
+        let placed = |shape| Solid::of_shape(shape, Pose::new(position, [turn, 0.0, 0.0]));
         shape.map(placed).map_err(|error| error.to_string())
     };
     let slab = || solid(Shape::cuboid([10.0 * D, 10.0 * D, 4.0 * D]), [5.0 * D, 5.0 * D, 2.0 * D], 0.0);

@@ -60,7 +60,7 @@ fn side(rayleigh: f64) -> f64 {
     (rayleigh * air.viscosity * air.heat_diffusivity() * MEAN / (GRAVITY * CONTRAST)).cbrt()
 }
 
-/// Particles of the walls whose places, in spacings from the cavity's corner, satisfy `belongs`.
+/// Particles of the walls whose positions, in spacings from the cavity's corner, satisfy `belongs`.
 fn wall(
     count: usize,
     spacing: f64,
@@ -71,9 +71,9 @@ fn wall(
 ) -> Body {
     let layers = WALL as i64;
     let along = -layers..count as i64 + layers;
-    let places = along.clone().flat_map(|x| along.clone().map(move |z| (x, z))).filter(|(x, z)| belongs(*x, *z));
+    let columns = along.clone().flat_map(|x| along.clone().map(move |z| (x, z))).filter(|(x, z)| belongs(*x, *z));
     let at = |k: i64| (k as f64 + 0.5) * spacing;
-    let positions: Vec<_> = places.flat_map(|(x, z)| (0..DEEP as i64).map(move |y| [at(x), at(y), at(z)])).collect();
+    let positions: Vec<_> = columns.flat_map(|(x, z)| (0..DEEP as i64).map(move |y| [at(x), at(y), at(z)])).collect();
     let (volumes, areas) = (vec![spacing.powi(3); positions.len()], vec![spacing.powi(2); positions.len()]);
     Body { positions, volumes, areas, material, temperature, held, surface: None, walls: None }
 }

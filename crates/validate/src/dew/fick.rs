@@ -50,10 +50,10 @@ fn errors(kernel: KernelName) -> Result<([f64; 2], f64), ModelError> {
     let found: Vec<(f64, f64)> =
         dew.air().iter().map(|particle| (particle.position[0] - half, 2.0 * particle.vapour / moist)).collect();
     let worst = found.iter().map(|&(x, humidity)| (humidity - exact(x)).abs()).fold(0.0, f64::max);
-    // Places half way between two layers.
-    let at = |place: f64| {
+    // Positions half way between two layers.
+    let at = |position: f64| {
         let near: Vec<f64> =
-            found.iter().filter(|(x, _)| (x - place).abs() < 0.6 * SPACING).map(|(_, humidity)| *humidity).collect();
+            found.iter().filter(|(x, _)| (x - position).abs() < 0.6 * SPACING).map(|(_, humidity)| *humidity).collect();
         near.iter().sum::<f64>() / near.len() as f64
     };
     Ok(([(at(0.005) - 0.479_50).abs(), (at(0.010) - 0.157_30).abs()], worst))

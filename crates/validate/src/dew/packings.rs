@@ -41,7 +41,7 @@ pub(super) enum Packing {
     Settled,
     /// Swirled off a lattice for some time.
     Stirred,
-    /// At random places within a spacing of those of a lattice, but for some sweeps that part those that stand on each other. Air that is
+    /// At random positions within a spacing of those of a lattice, but for some sweeps that part those that stand on each other. Air that is
     /// random over longer distances is not at rest: it flows from where there is more of it.
     Random,
 }

@@ -162,8 +162,8 @@ fn measure(options: &Options) -> Result<Vec<Row>, ModelError> {
     let errors: Vec<f64> = found.iter().map(|[ratio, ..]| (ratio - 1.0).abs()).collect();
     let mut rows = Vec::new();
     for ([speed, spacing], [far, near, _]) in runs.iter().zip(&found) {
-        let row = |place: &str, ratio: &f64, bound: f64| {
-            let measure = format!("sherwood_error{place}_{speed}_m_per_s_{}_mm", spacing * 1e3);
+        let row = |part: &str, ratio: &f64, bound: f64| {
+            let measure = format!("sherwood_error{part}_{speed}_m_per_s_{}_mm", spacing * 1e3);
             Row::at_most(PLATE.name, &measure, (ratio - 1.0).abs(), "", bound)
         };
         if options.reduced {

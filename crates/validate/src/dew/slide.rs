@@ -238,7 +238,7 @@ fn receding_error() -> f64 {
     HELD.into_iter().map(error).fold(0.0, f64::max)
 }
 
-/// Number of drops that are left of 2000 at the places of a spiral when they have merged, and relative errors of mass and momentum.
+/// Number of drops that are left of 2000 at the positions of a spiral when they have merged, and relative errors of mass and momentum.
 fn merging_errors() -> [f64; 3] {
     let mut drops = pane(DropLaws { gravity: [0.0; 3], ..laws(0.0, 0.5 * PI, 1e-5) }, 0.1, Vec::new());
     for at in 0..2000 {

@@ -57,15 +57,15 @@ impl Watched {
     }
 
     /// A column over time, and beside it what was measured, as `[time, value]` in order of time, on its unit.
-    pub fn chart(&self, column: usize, place: &str, quantity: &str, unit: &str, measured: Vec<[f64; 2]>) -> Chart {
+    pub fn chart(&self, column: usize, station: &str, quantity: &str, unit: &str, measured: Vec<[f64; 2]>) -> Chart {
         let computed =
             self.rows.iter().enumerate().map(|(sample, row)| [sample as f64 * self.interval, row[column]]).collect();
         let series =
             |name: &str, style, points| ChartSeries { name: name.into(), style, points, ..ChartSeries::default() };
         let axis = |label: &str, unit: &str| ChartAxis { label: label.into(), unit: unit.into(), logarithmic: false };
         Chart {
-            name: format!("{}_{}", quantity.to_lowercase().replace(' ', "_"), place.to_lowercase()),
-            title: format!("{quantity} at {place}"),
+            name: format!("{}_{}", quantity.to_lowercase().replace(' ', "_"), station.to_lowercase()),
+            title: format!("{quantity} at {station}"),
             x: axis("Time", "s"),
             y: axis(quantity, unit),
             series: vec![

@@ -26,7 +26,7 @@ struct Watched {
     step: f64,
     /// Of the heavy ball over the light ones' mean, as far as both move relative to the centre of mass.
     energy: Vec<f64>,
-    place: Vec<[f64; 3]>,
+    positions: Vec<[f64; 3]>,
 }
 
 fn watch(time: f64, step: f64) -> Result<Watched, ModelError> {
@@ -38,25 +38,25 @@ fn watch(time: f64, step: f64) -> Result<Watched, ModelError> {
     // With no momentum of the whole, a ball of mass m has the part 1 - m / M of what it has in an endless gas.
     let total = MASS + LIGHT as f64;
     let per_light = (1.0 - 1.0 / total) / (1.0 - MASS / total);
-    let mut watched = Watched { step, energy: Vec::new(), place: Vec::new() };
+    let mut watched = Watched { step, energy: Vec::new(), positions: Vec::new() };
     for sample in 0..(time / step) as u64 {
         advance(&mut gas, settled + sample as f64 * step)?;
         let heavy = 0.5 * MASS * gas.states()[0].1.iter().map(|v| v * v).sum::<f64>();
         let light = (gas.kinetic_energy() - heavy) / LIGHT as f64;
         watched.energy.push(heavy / light * per_light);
-        watched.place.push(gas.unwrapped()[0]);
+        watched.positions.push(gas.unwrapped()[0]);
     }
     Ok(watched)
 }
 
 impl Watched {
     /// Growth of the mean-square displacement from one lag to another in a unit of time.
-    fn slope(places: &[[f64; 3]], lags: [usize; 2], step: f64) -> f64 {
+    fn slope(positions: &[[f64; 3]], lags: [usize; 2], step: f64) -> f64 {
         let displacement = |lag: usize| {
-            let squares = places
+            let squares = positions
                 .windows(lag + 1)
                 .map(|way| (0..3).map(|axis| (way[lag][axis] - way[0][axis]).powi(2)).sum::<f64>());
-            squares.sum::<f64>() / (places.len() - lag) as f64
+            squares.sum::<f64>() / (positions.len() - lag) as f64
         };
         (displacement(lags[1]) - displacement(lags[0])) / ((lags[1] - lags[0]) as f64 * step)
     }
@@ -73,7 +73,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let energy = Watched::parts(&watched.energy, |part| part.iter().sum::<f64>() / part.len() as f64);
     // The ball forgets its velocity within about 1: all lags are late.
     let lags = |from: f64, to: f64| [from, to].map(|lag| (lag / watched.step) as usize);
-    let slopes = |lags| Watched::parts(&watched.place, |part| Watched::slope(part, lags, watched.step));
+    let slopes = |lags| Watched::parts(&watched.positions, |part| Watched::slope(part, lags, watched.step));
     let (early, late) = (slopes(lags(5.0, 10.0)), slopes(lags(10.0, 20.0)));
     let row = |measure, value, bound| Row::at_most(BROWNIAN.name, measure, value, "", bound);
     Ok(vec![

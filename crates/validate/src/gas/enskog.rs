@@ -38,19 +38,19 @@ fn collision_rate<const D: usize>(packing: f64) -> Result<Row, ModelError> {
 }
 
 /// Unwrapped positions of all balls at equal times.
-fn places<const D: usize>(gas: &mut Gas<D>, step: f64, count: usize) -> Result<Vec<Vec<[f64; D]>>, ModelError> {
+fn positions<const D: usize>(gas: &mut Gas<D>, step: f64, count: usize) -> Result<Vec<Vec<[f64; D]>>, ModelError> {
     let start = corpuscle_model::Model::time(gas);
-    let place = |sample: usize| {
+    let position = |sample: usize| {
         advance(gas, start + sample as f64 * step)?;
         Ok(gas.unwrapped())
     };
-    (0..count).map(place).collect()
+    (0..count).map(position).collect()
 }
 
 /// Mean-square displacement over `lag` samples of some of the balls, averaged over all times to start from.
-fn displacement<const D: usize>(places: &[Vec<[f64; D]>], lag: usize, balls: std::ops::Range<usize>) -> f64 {
+fn displacement<const D: usize>(positions: &[Vec<[f64; D]>], lag: usize, balls: std::ops::Range<usize>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for pair in places.windows(lag + 1) {
+    for pair in positions.windows(lag + 1) {
         for (from, to) in pair[0][balls.clone()].iter().zip(&pair[lag][balls.clone()]) {
             sum += (0..D).map(|axis| (to[axis] - from[axis]).powi(2)).sum::<f64>();
             count += 1.0;
@@ -61,12 +61,12 @@ fn displacement<const D: usize>(places: &[Vec<[f64; D]>], lag: usize, balls: std
 
 /// Diffusion coefficient from the growth of the mean-square displacement between two lags (Einstein 1905); its error from parts of
 /// the balls.
-fn slope<const D: usize>(places: &[Vec<[f64; D]>], lags: [usize; 2], step: f64) -> Estimate {
-    let (balls, parts) = (places[0].len(), 20);
+fn slope<const D: usize>(positions: &[Vec<[f64; D]>], lags: [usize; 2], step: f64) -> Estimate {
+    let (balls, parts) = (positions[0].len(), 20);
     let time = (lags[1] - lags[0]) as f64 * step * (2 * D) as f64;
     let of = |part: usize| {
         let range = part * balls / parts..(part + 1) * balls / parts;
-        (displacement(places, lags[1], range.clone()) - displacement(places, lags[0], range)) / time
+        (displacement(positions, lags[1], range.clone()) - displacement(positions, lags[0], range)) / time
     };
     Estimate::of(&(0..parts).map(of).collect::<Vec<_>>())
 }
@@ -78,8 +78,8 @@ fn diffusion(packing: f64, lag: f64, lags: usize) -> Result<Vec<Row>, ModelError
     let mut gas = Setup::<3>::fluid(count, packing).seed(SEED).build()?;
     advance(&mut gas, time_of::<3>(50.0, packing))?;
     let step = lag / samples as f64;
-    let places = places(&mut gas, step, lags * samples + 1)?;
-    let found = slope(&places, [samples, 2 * samples], step);
+    let positions = positions(&mut gas, step, lags * samples + 1)?;
+    let found = slope(&positions, [samples, 2 * samples], step);
     let images = theory::slowed_by_images(gas.volume().cbrt(), theory::enskog_viscosity(packing));
     let ratio = (found.mean + images) / theory::enskog_diffusion(packing);
     let error = (ratio / theory::diffusion_over_enskog(packing) - 1.0).abs();
@@ -99,8 +99,8 @@ fn disks() -> Result<Row, ModelError> {
     let mut gas = Setup::<2>::fluid(10_000, packing).seed(SEED).build()?;
     advance(&mut gas, time_of::<2>(50.0, packing))?;
     let step = time_of::<2>(5.0, packing);
-    let places = places(&mut gas, step, 61)?;
-    let (early, late) = (slope(&places, [1, 2], step), slope(&places, [8, 16], step));
+    let positions = positions(&mut gas, step, 61)?;
+    let (early, late) = (slope(&positions, [1, 2], step), slope(&positions, [8, 16], step));
     let growth = (late.mean - early.mean) / early.error.hypot(late.error);
     Ok(Row::at_least(ENSKOG.name, "diffusion_2d_grows_by_standard_errors", growth, "", 3.0))
 }

@@ -53,7 +53,7 @@ impl ModelScene for Ions {
     }
 }
 
-/// Places and velocities at the end of the last step, and places before it: what is shown lies between.
+/// Positions and velocities at the end of the last step, and positions before it: what is shown lies between.
 #[derive(Clone, Serialize, Deserialize)]
 struct State {
     steps: u64,

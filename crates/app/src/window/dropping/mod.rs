@@ -9,7 +9,8 @@ pub(super) use disk::ChosenFiles;
 #[cfg(target_arch = "wasm32")]
 pub(super) use page::ChosenFiles;
 
-use super::{Pending, Start, Window};
+use super::{Pending, Window};
+use crate::Start;
 use egui::{Align2, Color32, Context, FontId, Id, LayerId, Order};
 
 impl Window {

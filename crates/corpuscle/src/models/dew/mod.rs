@@ -9,7 +9,7 @@ use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
 use crate::pictures::{
     DrawContext, PictureSettings, Scenery, Sketcher, Subject,
-    dew::{DewPicture, DewSketch},
+    dew::{DewPicture, DewSketch, shows_air},
 };
 use corpuscle_model::ModelError;
 #[cfg(feature = "pictures")]
@@ -28,11 +28,6 @@ pub(super) struct Kind;
 /// The air and solids of a scene.
 fn dew(scene: &Scene) -> Result<&Dew, ModelError> {
     scene.dew().ok_or_else(|| ModelError::Setup("it is not the scene of dew".into()))
-}
-
-/// True where pictures show the air instead of the drops: where boundary treatments are compared.
-pub(crate) fn shows_air(dew: &Dew) -> bool {
-    dew.solid.windows(2).any(|pair| pair[0].treatment != pair[1].treatment)
 }
 
 impl ModelKind for Kind {
@@ -94,6 +89,7 @@ impl ModelKind for Kind {
         Ok(Box::new(DewPicture::new(context, dew(scenery.scene())?, scenery.surfaces())))
     }
 
+    #[cfg(feature = "pictures")]
     fn shows_particles(&self, scene: &Scene) -> bool {
         scene.dew().is_none_or(shows_air)
     }

@@ -6,7 +6,6 @@ mod sketch;
 
 use super::{DrawContext, Moment, OwnView, Shown, Subject};
 use crate::Error;
-use crate::models::dew::shows_air;
 use corpuscle_drawing::text;
 use corpuscle_model::{ParticleSet, Surface, Values};
 use corpuscle_render::{Axes, Cap, Drawable, Floor, FogPatch, Light, Overlay, Solid, SolidStyle, Stage};
@@ -28,6 +27,11 @@ const NO_SIDE: f64 = -1.9;
 const GLASS: [u8; 3] = [232, 242, 238];
 /// Colour of solids that are not glass.
 const MATT: [u8; 3] = [150, 152, 156];
+
+/// True where pictures show the air instead of the drops: where boundary treatments are compared.
+pub(crate) fn shows_air(dew: &Dew) -> bool {
+    dew.solid.windows(2).any(|pair| pair[0].treatment != pair[1].treatment)
+}
 
 /// Draws dew.
 pub(crate) enum DewPicture {

@@ -8,7 +8,7 @@ use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_drawing::text;
 use corpuscle_model::{ParticleSet, Surface, Values};
 use corpuscle_render::{
-    Axes, BallStyle, BallsOfDevice, Camera, ColourTable, Drawable, Key, KeyPlace, Light, Overlay, Shading, Solid,
+    Axes, BallStyle, BallsOfDevice, Camera, ColourTable, Drawable, Key, KeyPosition, Light, Overlay, Shading, Solid,
     SolidStyle, Stage, ValueOfDevice,
 };
 use corpuscle_scene::Dew;
@@ -59,7 +59,7 @@ impl Section {
             title: title.into(),
             time: format!("t = {}", text::time(time)),
             key: Some(Key::Values("Temperature of the air, °C".into(), self.colours.clone())),
-            key_place: KeyPlace::Beside,
+            key_position: KeyPosition::Beside,
             labels: self.labels.clone(),
             axes: Some(Axes { from, to, unit: "m".into(), heights: 1.0 }),
             ..Overlay::default()
@@ -89,7 +89,7 @@ impl SectionPicture {
                 context.balls.balls_of_device(gpu, &stage, &style, air, shows)?
             }
             None => {
-                let balls = |(place, kelvin): (&[f64; 3], &f64)| (*place, self.radius, kelvin - ZERO_CELSIUS);
+                let balls = |(position, kelvin): (&[f64; 3], &f64)| (*position, self.radius, kelvin - ZERO_CELSIUS);
                 let air = sets("air").flat_map(|set| set.position.iter().zip(temperatures(set)).map(balls));
                 context.balls.balls(gpu, &stage, &style, air)
             }

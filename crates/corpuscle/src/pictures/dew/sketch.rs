@@ -1,8 +1,7 @@
 //! Dew as discs: solids by their patches, drops, and the air of a section.
 
 use super::section::{RADIUS, Section, temperatures};
-use super::{FIELD_OF_VIEW, MARGIN, MATT, RAISED, Room, azimuth};
-use crate::models::dew::shows_air;
+use super::{FIELD_OF_VIEW, MARGIN, MATT, RAISED, Room, azimuth, shows_air};
 use crate::pictures::{Disc, Moment, OwnView, Patch, Sketch, SketchView, Sketcher};
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
 use corpuscle_drawing::text;
@@ -39,8 +38,8 @@ impl DewSketch {
     }
 
     fn air(&self, section: &Section, set: &ParticleSet) -> Vec<Disc> {
-        let disc = |(place, kelvin): (&[f64; 3], &f64)| Disc {
-            place: *place,
+        let disc = |(position, kelvin): (&[f64; 3], &f64)| Disc {
+            position: *position,
             radius: RADIUS * self.spacing,
             colour: section.colours.colour((kelvin - ZERO_CELSIUS) as f32),
             has_rim: true,
@@ -77,8 +76,8 @@ impl Sketcher for DewSketch {
         };
         for set in sets("drops") {
             let drops = set.position.iter().zip(&set.radius);
-            discs.extend(drops.map(|(place, radius)| Disc {
-                place: *place,
+            discs.extend(drops.map(|(position, radius)| Disc {
+                position: *position,
                 radius: *radius,
                 colour: WATER,
                 has_rim: true,
@@ -96,11 +95,11 @@ impl Sketcher for DewSketch {
 /// The patches of a solid, brighter where they face the light.
 fn patches(surface: &Surface, light: [f64; 3]) -> Vec<Patch> {
     let each = surface.position.iter().zip(&surface.normal).zip(&surface.half_width);
-    let patch = |((place, normal), half_width): ((&[f64; 3], &[f64; 3]), &f64)| {
+    let patch = |((position, normal), half_width): ((&[f64; 3], &[f64; 3]), &f64)| {
         let facing = (0..3).map(|axis| normal[axis] * light[axis]).sum::<f64>().clamp(-1.0, 1.0);
         let shade = SHADE[0] + (SHADE[1] - SHADE[0]) * (0.5 + 0.5 * facing);
         let colour = MATT.map(|channel| (f64::from(channel) * shade).min(255.0) as u8);
-        Patch::across(*place, *normal, PATCH * half_width, colour)
+        Patch::across(*position, *normal, PATCH * half_width, colour)
     };
     each.map(patch).collect()
 }

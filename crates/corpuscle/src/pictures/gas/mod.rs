@@ -11,7 +11,7 @@ use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_model::{Container, Frame, ParticleSet, Path};
 use corpuscle_output::{GasKey, gas_key};
 use corpuscle_render::{
-    BallStyle, Balls, Camera, ColourTable, Drawable, Floor, KeyPlace, Lens, Light, Shading, Stage, TubeStyle, Tubes,
+    BallStyle, Balls, Camera, ColourTable, Drawable, Floor, KeyPosition, Lens, Light, Shading, Stage, TubeStyle, Tubes,
 };
 use corpuscle_scene::{Gas, padded};
 use sides::Plates;
@@ -49,7 +49,7 @@ struct View {
     stage: Stage,
     camera: Camera,
     container: Container,
-    key_place: KeyPlace,
+    key_position: KeyPosition,
 }
 
 impl Subject for GasPicture {
@@ -105,18 +105,18 @@ impl GasPicture {
         let aspect = context.aspect();
         if self.gas.dimensions() > 2 {
             let camera = context.camera(&stage, &OWN_VIEW, moment.frame.time);
-            return View { stage, camera, container, key_place: KeyPlace::Corner };
+            return View { stage, camera, container, key_position: KeyPosition::Corner };
         }
         if !context.overlaid {
             let camera = context.camera_offset.moved(Camera::plan(&stage, aspect, IN_WINDOW));
-            return View { stage, camera, container, key_place: KeyPlace::Corner };
+            return View { stage, camera, container, key_position: KeyPosition::Corner };
         }
-        let places = [(KeyPlace::Below, BELOW), (KeyPlace::Beside, BESIDE)];
-        let [below, beside] = places.map(|(key_place, margins)| View {
+        let positions = [(KeyPosition::Below, BELOW), (KeyPosition::Beside, BESIDE)];
+        let [below, beside] = positions.map(|(key_position, margins)| View {
             stage,
             camera: context.camera_offset.moved(Camera::plan(&stage, aspect, margins)),
             container,
-            key_place,
+            key_position,
         });
         let many = matches!(key, GasKey::Kinds(kinds) if kinds.len() > MOST_IN_A_ROW);
         if many || shown_height(&beside.camera) < shown_height(&below.camera) { beside } else { below }

@@ -33,7 +33,7 @@ impl GasPicture {
             title: title.into(),
             time: format!("t = {time}"),
             key: Some(key),
-            key_place: view.key_place,
+            key_position: view.key_position,
             lines: self.lines(moment),
             remark,
             borders: if flat { sides::borders(&self.gas, view, moment.frame.time) } else { Vec::new() },
@@ -96,10 +96,10 @@ impl GasPicture {
 /// The name of a region, in the middle of its upper side.
 fn label(region: &NamedRegion) -> ([f64; 3], String) {
     let (from, to) = (padded(&region.from), padded(&region.to));
-    let mut place: [f64; 3] = std::array::from_fn(|axis| 0.5 * (from[axis] + to[axis]));
+    let mut position: [f64; 3] = std::array::from_fn(|axis| 0.5 * (from[axis] + to[axis]));
     let upwards = region.to.len() - 1;
-    place[upwards] = to[upwards];
-    (place, region.name.clone())
+    position[upwards] = to[upwards];
+    (position, region.name.clone())
 }
 
 #[cfg(test)]

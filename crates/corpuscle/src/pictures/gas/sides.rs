@@ -33,8 +33,8 @@ pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
         let (across, along) = (axis.index(), 1 - axis.index());
         for (end, wall) in gas.walls.along(axis).into_iter().enumerate() {
             let span = if moves(wall) { container } else { stage };
-            let place = |at: f64| if across == 0 { [container[end][0], at] } else { [at, container[end][1]] };
-            let ends = [place(span[0][along]), place(span[1][along])];
+            let position = |at: f64| if across == 0 { [container[end][0], at] } else { [at, container[end][1]] };
+            let ends = [position(span[0][along]), position(span[1][along])];
             let mut outwards = [0.0; 2];
             outwards[across] = if end == 0 { -1.0 } else { 1.0 };
             let line = |style| Border::Line { style, ends, outwards };
@@ -53,10 +53,10 @@ pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
         let [low, high] = [container[0][1 - across], container[1][1 - across]];
         let hole = partition.hole.as_ref().map(|hole| [hole.from[0], hole.to[0]]);
         let stretches = hole.map_or(vec![[low, high]], |[from, to]| vec![[low, from], [to, high]]);
-        let place = |at: f64| if across == 0 { [partition.at, at] } else { [at, partition.at] };
+        let position = |at: f64| if across == 0 { [partition.at, at] } else { [at, partition.at] };
         borders.extend(stretches.into_iter().map(|stretch| Border::Line {
             style: LineStyle::Partition,
-            ends: stretch.map(place),
+            ends: stretch.map(position),
             outwards: [0.0; 2],
         }));
     }

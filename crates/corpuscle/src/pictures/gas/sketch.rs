@@ -4,7 +4,7 @@ use super::{GasPicture, IN_WINDOW, INK, OWN_VIEW, TRAJECTORY, View, so_far, spee
 use crate::pictures::{Disc, Line, Moment, Sketch, SketchView, Sketcher};
 use corpuscle_model::{Container, ParticleSet};
 use corpuscle_output::gas_key;
-use corpuscle_render::{KeyPlace, box_edges};
+use corpuscle_render::{KeyPosition, box_edges};
 
 impl Sketcher for GasPicture {
     fn sketch(&mut self, seen: &SketchView, title: &str, moment: &Moment<'_>) -> Sketch {
@@ -12,12 +12,12 @@ impl Sketcher for GasPicture {
         let (stage, container) = self.stage(moment);
         let is_flat = self.gas.dimensions() == 2;
         let camera = if is_flat { seen.plan(&stage, IN_WINDOW) } else { seen.orbit(&stage, &OWN_VIEW) };
-        let view = View { stage, camera, container, key_place: KeyPlace::Corner };
+        let view = View { stage, camera, container, key_position: KeyPosition::Corner };
         let overlay = self.overlay(title, moment, &key, &view, String::new());
         let balls = |(number, set): (usize, &ParticleSet)| {
             let colours = Self::colours(number, &key);
             let ball = |at: usize| Disc {
-                place: set.position[at],
+                position: set.position[at],
                 radius: set.radius[at],
                 colour: colours.colour(speed(set, at) as f32),
                 has_rim: true,

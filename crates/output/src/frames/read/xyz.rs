@@ -57,7 +57,7 @@ fn read_row(line: &str, width: usize, sets: &mut Vec<(ParticleSet, Vec<Vec<f64>>
         sets.push((set, vec![Vec::new(); width]));
     }
     let number = |word: &str| word.parse::<f64>().map_err(|_| format!("`{word}` is not a number"));
-    let place = [number(x)?, number(y)?, number(z)?];
+    let position = [number(x)?, number(y)?, number(z)?];
     let numbers = numbers.iter().map(|word| number(word)).collect::<Result<Vec<f64>, String>>()?;
     let [u, v, w, radius, mass, own @ ..] = &numbers[..] else { return Err("it is too short".into()) };
     if own.len() != width {
@@ -65,7 +65,7 @@ fn read_row(line: &str, width: usize, sets: &mut Vec<(ParticleSet, Vec<Vec<f64>>
     }
     let Some((set, columns)) = sets.last_mut() else { return Ok(()) };
     set.id.push(id.parse().map_err(|_| format!("`{id}` is not the number of a particle"))?);
-    set.position.push(place);
+    set.position.push(position);
     set.velocity.push([*u, *v, *w]);
     set.radius.push(*radius);
     set.mass.push(*mass);

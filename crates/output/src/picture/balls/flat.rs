@@ -35,7 +35,7 @@ pub(super) fn picture(balls: &Balls, shown_at: f64) -> Result<Figure, String> {
     let paper = Paper { origin: [balls.view[0][0], balls.view[1][1]], scale: scale(balls) };
     let mut svg = Svg::default();
     let [left_top, right_bottom] =
-        [[balls.from[0], balls.to[1]], [balls.to[0], balls.from[1]]].map(|corner| paper.place(corner));
+        [[balls.from[0], balls.to[1]], [balls.to[0], balls.from[1]]].map(|corner| paper.position(corner));
     let inside = [right_bottom[0] - left_top[0], right_bottom[1] - left_top[1]];
     svg.rectangle(left_top, inside, "paper");
     if balls.discs.len() > MOST_CIRCLES {
@@ -57,12 +57,12 @@ struct Paper {
 }
 
 impl Paper {
-    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    fn position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [MARGIN + (x - self.origin[0]) * self.scale, MARGIN + (self.origin[1] - y) * self.scale]
     }
 
     fn of(&self, position: [f64; 3]) -> [f64; 2] {
-        self.place([position[0], position[1]])
+        self.position([position[0], position[1]])
     }
 }
 
@@ -79,8 +79,8 @@ fn draw_circles(svg: &mut Svg, balls: &Balls, paper: &Paper) {
 fn paint(balls: &Balls, paper: &Paper, size: [f64; 2], fineness: f64) -> Result<Vec<u8>, String> {
     let mut canvas = Flat::new(size.map(|length| (length * fineness).ceil() as usize));
     for disc in &balls.discs {
-        let place = paper.of(disc.position).map(|length| length * fineness);
-        canvas.disc(place, disc.radius * paper.scale * fineness, disc.colour);
+        let position = paper.of(disc.position).map(|length| length * fineness);
+        canvas.disc(position, disc.radius * paper.scale * fineness, disc.colour);
     }
     canvas.png()
 }
@@ -133,8 +133,9 @@ fn draw_partition(svg: &mut Svg, balls: &Balls, paper: &Paper) {
         stretches = vec![[balls.from[along], from[0]], [to[0], balls.to[along]]];
     }
     for stretch in stretches {
-        let ends =
-            stretch.map(|place| paper.place(if along == 1 { [partition.at, place] } else { [place, partition.at] }));
+        let ends = stretch.map(|position| {
+            paper.position(if along == 1 { [partition.at, position] } else { [position, partition.at] })
+        });
         svg.line(ends[0], ends[1], "partition");
     }
 }

@@ -34,7 +34,7 @@ pub(crate) enum Side {
 /// A thin wall across the box.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Across {
-    /// Number of the axis that it stands across, and its place there.
+    /// Number of the axis that it stands across, and its position there.
     pub axis: usize,
     pub at: f64,
     /// A hole: from and to along the other axes.

@@ -48,7 +48,7 @@ impl Flat {
 
 /// Pixels of a row or column that a disc may touch.
 fn within(centre: f64, radius: f64, count: usize) -> std::ops::Range<usize> {
-    let bound = |place: f64| place.clamp(0.0, count as f64) as usize;
+    let bound = |position: f64| position.clamp(0.0, count as f64) as usize;
     bound(centre - radius - 1.0)..bound(centre + radius + 2.0)
 }
 
@@ -72,7 +72,7 @@ const SHINE: [f64; 3] = [-0.242, 0.341, 0.908];
 
 /// A sphere as the eye sees it: its middle in pixels, y downwards, its distance, both in pixels, and its radius.
 pub(super) struct Seen {
-    pub place: [f64; 2],
+    pub point: [f64; 2],
     pub distance: f64,
     pub radius: f64,
     pub colour: Colour,
@@ -88,7 +88,7 @@ impl Spheres {
     pub(super) fn sphere(&mut self, seen: &Seen) {
         let fine = SAMPLES as f64;
         let ([x, y], distance, radius) =
-            (seen.place.map(|length| length * fine), seen.distance * fine, seen.radius * fine);
+            (seen.point.map(|length| length * fine), seen.distance * fine, seen.radius * fine);
         for row in within(y, radius, self.height) {
             for column in within(x, radius, self.width) {
                 let [across, up] = [(column as f64 + 0.5 - x) / radius, (y - row as f64 - 0.5) / radius];
@@ -148,8 +148,8 @@ mod tests {
 
     #[test]
     fn the_nearer_sphere_hides_the_farther_in_any_order() {
-        let near = Seen { place: [10.0, 10.0], distance: 50.0, radius: 4.0, colour: [200, 0, 0] };
-        let far = Seen { place: [10.0, 10.0], distance: 90.0, radius: 8.0, colour: [0, 0, 200] };
+        let near = Seen { point: [10.0, 10.0], distance: 50.0, radius: 4.0, colour: [200, 0, 0] };
+        let far = Seen { point: [10.0, 10.0], distance: 90.0, radius: 8.0, colour: [0, 0, 200] };
         let paint = |spheres: [&Seen; 2]| {
             let mut canvas = Spheres::new([20, 20]);
             spheres.into_iter().for_each(|sphere| canvas.sphere(sphere));

@@ -34,9 +34,9 @@ struct Eye {
     size: [f64; 2],
 }
 
-/// A place as the eye sees it: place in CSS pixels, distance from the eye, and how much larger than at the middle.
+/// A position as the eye sees it: point of the page in CSS pixels, distance from the eye, and how much larger than at the middle.
 struct Sight {
-    place: [f64; 2],
+    point: [f64; 2],
     distance: f64,
     nearer: f64,
 }
@@ -49,11 +49,11 @@ impl Eye {
         let middle = std::array::from_fn(|k| 0.5 * (from[k] + to[k]));
         let mut eye =
             Self { middle, distance: DISTANCE * diagonal, diagonal, scale: 1.0, corner: [0.0; 2], size: [0.0; 2] };
-        let places = corners(from, to).map(|corner| eye.see(corner).place);
-        let low = [0, 1].map(|k| places.iter().map(|place| place[k]).fold(f64::INFINITY, f64::min));
-        let high = [0, 1].map(|k| places.iter().map(|place| place[k]).fold(f64::NEG_INFINITY, f64::max));
+        let points = corners(from, to).map(|corner| eye.see(corner).point);
+        let low = [0, 1].map(|k| points.iter().map(|point| point[k]).fold(f64::INFINITY, f64::min));
+        let high = [0, 1].map(|k| points.iter().map(|point| point[k]).fold(f64::NEG_INFINITY, f64::max));
         eye.scale = (MOST[0] / (high[0] - low[0])).min(MOST[1] / (high[1] - low[1]));
-        eye.corner = low.map(|place| place * eye.scale - MARGIN);
+        eye.corner = low.map(|along| along * eye.scale - MARGIN);
         eye.size = [0, 1].map(|k| (high[k] - low[k]) * eye.scale + 2.0 * MARGIN);
         eye
     }
@@ -65,8 +65,8 @@ impl Eye {
         let (up, away) = (z * cos_r + away * sin_r, away * cos_r - z * sin_r);
         let distance = self.distance + away;
         let nearer = self.distance / distance;
-        let place = [right * nearer * self.scale - self.corner[0], -up * nearer * self.scale - self.corner[1]];
-        Sight { place, distance, nearer }
+        let point = [right * nearer * self.scale - self.corner[0], -up * nearer * self.scale - self.corner[1]];
+        Sight { point, distance, nearer }
     }
 }
 
@@ -94,7 +94,7 @@ pub(super) fn picture(balls: &Balls, shown_at: f64) -> Result<Figure, String> {
     draw_edges(&mut svg, balls, &eye, true);
     if !balls.trajectory.is_empty() {
         for class in ["trajectory-under", "trajectory"] {
-            svg.path(balls.trajectory.iter().map(|point| eye.see(*point).place), false, class);
+            svg.path(balls.trajectory.iter().map(|point| eye.see(*point).point), false, class);
         }
     }
     Ok(svg.finish(eye.size, "Balls in their box"))
@@ -107,7 +107,7 @@ fn paint(balls: &Balls, eye: &Eye, fineness: f64) -> Result<Vec<u8>, String> {
         let sight = eye.see(disc.position);
         let haze = HAZE * ((sight.distance - near) / eye.diagonal).clamp(0.0, 1.0);
         canvas.sphere(&Seen {
-            place: sight.place.map(|length| length * fineness),
+            point: sight.point.map(|length| length * fineness),
             distance: sight.distance * eye.scale * fineness,
             radius: disc.radius * sight.nearer * eye.scale * fineness,
             colour: mix(disc.colour, [0xfc, 0xfd, 0xfe], haze),
@@ -118,8 +118,8 @@ fn paint(balls: &Balls, eye: &Eye, fineness: f64) -> Result<Vec<u8>, String> {
 
 /// Edges of the box: those that meet in the farthest corner behind the balls, the others before them.
 fn draw_edges(svg: &mut Svg, balls: &Balls, eye: &Eye, front: bool) {
-    let places = corners(balls.from, balls.to);
-    let sights = places.map(|corner| eye.see(corner));
+    let ends = corners(balls.from, balls.to);
+    let sights = ends.map(|corner| eye.see(corner));
     let farthest = (0..8).max_by(|a, b| sights[*a].distance.total_cmp(&sights[*b].distance)).unwrap_or(0);
     for corner in 0..8usize {
         for axis in (0..3).filter(|axis| corner >> axis & 1 == 0) {
@@ -135,7 +135,7 @@ fn draw_edges(svg: &mut Svg, balls: &Balls, eye: &Eye, front: bool) {
                 (false, true) => "edge edge-front",
                 (false, false) => "edge",
             };
-            svg.line(sights[corner].place, sights[other].place, class);
+            svg.line(sights[corner].point, sights[other].point, class);
         }
     }
 }
@@ -145,16 +145,16 @@ fn draw_faces(svg: &mut Svg, balls: &Balls, eye: &Eye) {
     let face = |svg: &mut Svg, axis: usize, at: f64, from: [f64; 3], to: [f64; 3]| {
         let [one, other] = [(axis + 1) % 3, (axis + 2) % 3];
         let corner = |ends: [[f64; 3]; 2]| {
-            let mut place = [at; 3];
-            (place[one], place[other]) = (ends[0][one], ends[1][other]);
-            eye.see(place).place
+            let mut position = [at; 3];
+            (position[one], position[other]) = (ends[0][one], ends[1][other]);
+            eye.see(position).point
         };
         svg.path([corner([from, from]), corner([to, from]), corner([to, to]), corner([from, to])], true, "face");
     };
     for axis in 0..3 {
-        for (end, place) in [balls.from, balls.to].into_iter().enumerate() {
+        for (end, corner) in [balls.from, balls.to].into_iter().enumerate() {
             if balls.sides[axis][end] == Side::Piston {
-                face(svg, axis, place[axis], balls.from, balls.to);
+                face(svg, axis, corner[axis], balls.from, balls.to);
             }
         }
     }
@@ -165,7 +165,7 @@ fn draw_faces(svg: &mut Svg, balls: &Balls, eye: &Eye) {
     face(svg, partition.axis, partition.at, ends[0], ends[1]);
 }
 
-/// A place on a face from its two coordinates there.
+/// A position on a face from its two coordinates there.
 fn spread(coordinates: &[f64], axis: usize, at: f64) -> [f64; 3] {
     let mut rest = coordinates.iter().copied();
     std::array::from_fn(|k| if k == axis { at } else { rest.next().unwrap_or(0.0) })
@@ -180,9 +180,9 @@ mod tests {
         let (from, to) = ([0.0; 3], [2e-9, 1e-9, 3e-9]);
         let eye = Eye::on([from, to]);
         for corner in corners(from, to) {
-            let place = eye.see(corner).place;
-            let inside = (0..2).all(|k| place[k] >= MARGIN - 1e-6 && place[k] <= eye.size[k] - MARGIN + 1e-6);
-            assert!(inside, "{place:?} in {:?}", eye.size);
+            let point = eye.see(corner).point;
+            let inside = (0..2).all(|k| point[k] >= MARGIN - 1e-6 && point[k] <= eye.size[k] - MARGIN + 1e-6);
+            assert!(inside, "{point:?} in {:?}", eye.size);
         }
         let front = eye.see([1e-9, 0.0, 1.5e-9]);
         let back = eye.see([1e-9, 1e-9, 1.5e-9]);

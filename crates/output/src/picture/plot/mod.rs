@@ -19,7 +19,7 @@ struct Plot {
 }
 
 impl Plot {
-    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    fn position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ([left, top], [right, bottom]) = (self.left_top, self.right_bottom);
         [left + self.x.part(x) * (right - left), bottom - self.y.part(y) * (bottom - top)]
     }
@@ -155,17 +155,17 @@ fn draw_series(svg: &mut Svg, plot: &Plot, series: &ChartSeries, number: usize, 
     let (class, style) = class_and_style(series, number);
     match series.style {
         ChartStyle::Line | ChartStyle::Dashes => {
-            svg.styled_path(series.points.iter().map(|point| plot.place(*point)), false, &class, &style);
+            svg.styled_path(series.points.iter().map(|point| plot.position(*point)), false, &class, &style);
         }
         ChartStyle::Points => {
-            for place in series.points.iter().map(|point| plot.place(*point)).filter(on_page) {
-                svg.styled_circle(place, if series.points.len() > 60 { 2.0 } else { 3.2 }, &class, &style);
+            for position in series.points.iter().map(|point| plot.position(*point)).filter(on_page) {
+                svg.styled_circle(position, if series.points.len() > 60 { 2.0 } else { 3.2 }, &class, &style);
             }
         }
         ChartStyle::Bars => draw_bars(svg, plot, series, logarithmic, (&class, &style)),
     }
     for (point, error) in series.points.iter().zip(&series.errors).filter(|(_, error)| **error > 0.0) {
-        let [high, low] = [point[1] + error, point[1] - error].map(|y| plot.place([point[0], y]));
+        let [high, low] = [point[1] + error, point[1] - error].map(|y| plot.position([point[0], y]));
         if on_page(&high) {
             // Below the first value of a logarithmic axis the bar goes on to its end.
             let bottom = plot.right_bottom[1];
@@ -177,8 +177,8 @@ fn draw_series(svg: &mut Svg, plot: &Plot, series: &ChartSeries, number: usize, 
 fn draw_bars(svg: &mut Svg, plot: &Plot, series: &ChartSeries, logarithmic: bool, (class, style): (&str, &str)) {
     for point in series.points.iter().filter(|point| point[1].is_finite() && point[1] != 0.0) {
         let [from, to] = bar(series, point[0], logarithmic);
-        let [left, top] = plot.place([from, point[1]]);
-        let [right, _] = plot.place([to, point[1]]);
+        let [left, top] = plot.position([from, point[1]]);
+        let [right, _] = plot.position([to, point[1]]);
         if !(left.is_finite() && right.is_finite() && top.is_finite()) {
             continue;
         }
@@ -188,8 +188,8 @@ fn draw_bars(svg: &mut Svg, plot: &Plot, series: &ChartSeries, logarithmic: bool
     }
 }
 
-fn on_page(place: &[f64; 2]) -> bool {
-    place.iter().all(|value| value.is_finite())
+fn on_page(position: &[f64; 2]) -> bool {
+    position.iter().all(|value| value.is_finite())
 }
 
 #[cfg(test)]
@@ -211,7 +211,7 @@ mod tests {
         let bars = series(ChartStyle::Bars, &[[0.5, 3.0], [1.5, 5.0]]);
         let plot = lay_out(&chart(vec![bars]), 50.0, [400.0, 300.0]);
         assert_eq!(plot.base(), 300.0 - BOTTOM);
-        let ends = [plot.place([0.0, 0.0])[0], plot.place([2.0, 0.0])[0]];
+        let ends = [plot.position([0.0, 0.0])[0], plot.position([2.0, 0.0])[0]];
         assert_eq!(ends, [plot.left_top[0], plot.right_bottom[0]]);
     }
 

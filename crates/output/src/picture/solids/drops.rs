@@ -35,7 +35,7 @@ pub(super) fn light(screen: &Screen) -> Vector {
 pub(super) fn draw(screen: &Screen, caps: &[Cap], hits: &[Hit], mut mist: Vec<f64>, colours: &mut [Vector]) {
     let mut order: Vec<&Cap> = caps.iter().filter(|cap| dot(cap.normal, screen.view.ahead) < 0.0).collect();
     // The farthest first.
-    order.sort_by(|a, b| screen.view.place(b.position)[2].total_cmp(&screen.view.place(a.position)[2]));
+    order.sort_by(|a, b| screen.view.position(b.position)[2].total_cmp(&screen.view.position(a.position)[2]));
     let before = colours.to_vec();
     for cap in &order {
         if cap.radius < SMALLEST * screen.pixel {
@@ -53,8 +53,8 @@ pub(super) fn draw(screen: &Screen, caps: &[Cap], hits: &[Hit], mut mist: Vec<f6
 
 /// What a drop covers, over the pixels round its middle.
 fn add_mist(screen: &Screen, cap: &Cap, hits: &[Hit], mist: &mut [f64]) {
-    let place = screen.view.place(cap.position);
-    let [x, y] = screen.pixel_of(place).map(f64::floor);
+    let position = screen.view.position(cap.position);
+    let [x, y] = screen.pixel_of(position).map(f64::floor);
     let across = -dot(cap.normal, screen.view.ahead);
     let covered = std::f64::consts::PI * (cap.radius / screen.pixel).powi(2) * across;
     // Three by three pixels, the middle most.
@@ -66,7 +66,7 @@ fn add_mist(screen: &Screen, cap: &Cap, hits: &[Hit], mist: &mut [f64]) {
             continue;
         }
         let pixel = row as usize * screen.width + column as usize;
-        if hits[pixel].solid.is_some() && place[2] < hits[pixel].depth + 3.0 * screen.pixel {
+        if hits[pixel].solid.is_some() && position[2] < hits[pixel].depth + 3.0 * screen.pixel {
             mist[pixel] += covered * share / 16.0;
         }
     }
@@ -75,7 +75,7 @@ fn add_mist(screen: &Screen, cap: &Cap, hits: &[Hit], mist: &mut [f64]) {
 fn draw_cap(screen: &Screen, cap: &Cap, hits: &[Hit], before: &[Vector], colours: &mut [Vector]) {
     let ball = (cap.radius * cap.radius + cap.height * cap.height) / (2.0 * cap.height);
     let centre: Vector = std::array::from_fn(|axis| cap.position[axis] + (cap.height - ball) * cap.normal[axis]);
-    let middle = screen.view.place(centre);
+    let middle = screen.view.position(centre);
     let [x, y] = screen.pixel_of(middle);
     let reach = ball / screen.pixel + 1.0;
     let range = |at: f64, most: usize| (at - reach).max(0.0) as usize..((at + reach).max(0.0) as usize + 1).min(most);

@@ -1,4 +1,4 @@
-//! A field on the patches of a surface, at any place of it.
+//! A field on the patches of a surface, at any position of it.
 
 use super::view::{Vector, dot};
 use corpuscle_model::Surface;
@@ -26,15 +26,15 @@ impl<'a> Field<'a> {
     }
 
     /// The mean of the patches near that face alike, the nearest most; none where none is near, or the nearest has no value.
-    pub(super) fn at(&self, place: Vector, normal: Vector) -> Option<f64> {
-        let middle = cell(place, self.side);
+    pub(super) fn at(&self, position: Vector, normal: Vector) -> Option<f64> {
+        let middle = cell(position, self.side);
         let (mut sum, mut weights) = (0.0, 0.0);
         let (mut largest, mut nearest_has_value) = (0.0, false);
         for which in 0..27_i64 {
             let offset = [which % 3 - 1, which / 3 % 3 - 1, which / 9 - 1];
             let cell = std::array::from_fn(|axis| middle[axis] + offset[axis]);
             for &patch in self.cells.get(&cell).into_iter().flatten() {
-                let away: Vector = std::array::from_fn(|axis| place[axis] - self.surface.position[patch][axis]);
+                let away: Vector = std::array::from_fn(|axis| position[axis] - self.surface.position[patch][axis]);
                 let part = 1.0 - dot(away, away) / (REACH * self.surface.half_width[patch]).powi(2);
                 let alike = dot(normal, self.surface.normal[patch]);
                 if part <= 0.0 || alike <= 0.3 {
@@ -54,6 +54,6 @@ impl<'a> Field<'a> {
     }
 }
 
-fn cell(place: Vector, side: f64) -> [i64; 3] {
-    place.map(|x| (x / side).floor() as i64)
+fn cell(position: Vector, side: f64) -> [i64; 3] {
+    position.map(|x| (x / side).floor() as i64)
 }

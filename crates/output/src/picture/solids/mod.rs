@@ -72,7 +72,7 @@ impl SolidsPicture<'_> {
         let field = Field::new(&self.surfaces[0], values);
         let mut colours = plain(&screen, &hits);
         for (colour, hit) in colours.iter_mut().zip(&hits).filter(|(_, hit)| hit.solid == Some(0)) {
-            if let Some(value) = field.at(hit.place, hit.normal) {
+            if let Some(value) = field.at(hit.position, hit.normal) {
                 let bright = 0.85 + 0.15 * (-dot(hit.normal, screen.view.ahead)).max(0.0);
                 let shown = of_part(value / most).map(|channel| f64::from(channel) * bright);
                 *colour = mix(BEHIND, shown, hit.cover);
@@ -101,7 +101,7 @@ impl SolidsPicture<'_> {
         let parts: Vec<Option<Field<'_>>> = covered.collect();
         let of = |hit: &Hit| {
             let part = parts[hit.solid?].as_ref()?;
-            part.at(hit.place, hit.normal)
+            part.at(hit.position, hit.normal)
         };
         hits.par_iter().with_min_len(256).map(|hit| of(hit).unwrap_or(0.0)).collect()
     }

@@ -15,7 +15,7 @@ const MET: f64 = 0.1;
 pub(super) struct Hit {
     /// The solid; none where there is no hit.
     pub solid: Option<usize>,
-    pub place: Vector,
+    pub position: Vector,
     pub normal: Vector,
     /// Depth along the view, m.
     pub depth: f64,
@@ -23,7 +23,7 @@ pub(super) struct Hit {
     pub cover: f64,
 }
 
-const NOTHING: Hit = Hit { solid: None, place: [0.0; 3], normal: [0.0; 3], depth: f64::INFINITY, cover: 0.0 };
+const NOTHING: Hit = Hit { solid: None, position: [0.0; 3], normal: [0.0; 3], depth: f64::INFINITY, cover: 0.0 };
 
 /// Pixels over a part of the view.
 #[derive(Debug, Clone, Copy)]
@@ -43,9 +43,9 @@ impl Screen {
         [self.corner[0] + (column as f64 + 0.5) * self.pixel, self.corner[1] - (row as f64 + 0.5) * self.pixel]
     }
 
-    /// Column and row, with their parts, of a place in the view.
-    pub(super) fn pixel_of(&self, place: Vector) -> [f64; 2] {
-        [(place[0] - self.corner[0]) / self.pixel, (self.corner[1] - place[1]) / self.pixel]
+    /// Column and row, with their parts, of a position in the view.
+    pub(super) fn pixel_of(&self, position: Vector) -> [f64; 2] {
+        [(position[0] - self.corner[0]) / self.pixel, (self.corner[1] - position[1]) / self.pixel]
     }
 
     /// What each pixel shows, row by row. Of solids only what is in `room` is seen.
@@ -75,13 +75,13 @@ impl Screen {
         let mut way = enter;
         let mut nearest = f64::INFINITY;
         for step in 0..MOST_STEPS {
-            let place = along(start, self.view.ahead, way);
-            let distance = (solid.distance)(place);
+            let position = along(start, self.view.ahead, way);
+            let distance = (solid.distance)(position);
             if distance < MET * self.pixel {
                 // A solid that goes on beyond the room is cut there, and seen as it faces the eye.
                 let is_cut = step == 0 && distance < -self.pixel;
-                let normal = if is_cut { self.view.ahead.map(|x| -x) } else { self.slope(solid, place) };
-                return Hit { solid: None, place, normal, depth: depths[0] - self.pixel + way, cover: 1.0 };
+                let normal = if is_cut { self.view.ahead.map(|x| -x) } else { self.slope(solid, position) };
+                return Hit { solid: None, position, normal, depth: depths[0] - self.pixel + way, cover: 1.0 };
             }
             if distance < nearest {
                 nearest = distance;
@@ -92,15 +92,15 @@ impl Screen {
             }
         }
         let cover = (0.5 - nearest / self.pixel).max(0.0);
-        let place = along(start, self.view.ahead, way.min(leave));
-        Hit { solid: None, place, normal: self.slope(solid, place), depth: depths[0] + way.min(leave), cover }
+        let position = along(start, self.view.ahead, way.min(leave));
+        Hit { solid: None, position, normal: self.slope(solid, position), depth: depths[0] + way.min(leave), cover }
     }
 
     /// The outward normal of a solid near its surface, by differences.
-    fn slope(&self, solid: &SolidShape, place: Vector) -> Vector {
+    fn slope(&self, solid: &SolidShape, position: Vector) -> Vector {
         let step = 0.5 * self.pixel;
         let slope: Vector = std::array::from_fn(|axis| {
-            let [mut before, mut after] = [place; 2];
+            let [mut before, mut after] = [position; 2];
             before[axis] -= step;
             after[axis] += step;
             (solid.distance)(after) - (solid.distance)(before)

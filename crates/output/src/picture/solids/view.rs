@@ -79,24 +79,24 @@ impl View {
         (best, if all > 0.0 { most / all } else { 0.0 })
     }
 
-    /// How far to the right, up and ahead a place is.
-    pub(super) fn place(&self, point: Vector) -> Vector {
+    /// How far to the right, up and ahead a position is.
+    pub(super) fn position(&self, point: Vector) -> Vector {
         [dot(point, self.right), dot(point, self.up), dot(point, self.ahead)]
     }
 
-    /// The place so far to the right, up and ahead.
+    /// The position so far to the right, up and ahead.
     pub(super) fn point(&self, [x, y, depth]: Vector) -> Vector {
         std::array::from_fn(|axis| x * self.right[axis] + y * self.up[axis] + depth * self.ahead[axis])
     }
 
-    /// Smallest and largest places of a box.
+    /// Smallest and largest positions of a box.
     pub(super) fn around(&self, [from, to]: [Vector; 2]) -> [Vector; 2] {
         let corners =
             (0..8).map(|which| std::array::from_fn(|axis| if which >> axis & 1 == 0 { from } else { to }[axis]));
-        corners.map(|corner| self.place(corner)).fold(
+        corners.map(|corner| self.position(corner)).fold(
             [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
-            |[low, high], place| {
-                [std::array::from_fn(|k| low[k].min(place[k])), std::array::from_fn(|k| high[k].max(place[k]))]
+            |[low, high], position| {
+                [std::array::from_fn(|k| low[k].min(position[k])), std::array::from_fn(|k| high[k].max(position[k]))]
             },
         )
     }
@@ -110,10 +110,10 @@ mod tests {
     fn a_view_is_upright_and_not_mirrored() {
         let front = View::looking([0.0, 1.0, 0.0]);
         assert_eq!((front.right, front.up), ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]));
-        let place = [1.0, 2.0, 3.0];
+        let position = [1.0, 2.0, 3.0];
         let slanting = View::looking([0.3, 0.5, -0.7]);
-        let back = slanting.point(slanting.place(place));
-        assert!((0..3).all(|axis| (back[axis] - place[axis]).abs() < 1e-12));
+        let back = slanting.point(slanting.position(position));
+        assert!((0..3).all(|axis| (back[axis] - position[axis]).abs() < 1e-12));
         assert!(slanting.up[2] > 0.0 && slanting.right[2].abs() < 1e-12);
     }
 }

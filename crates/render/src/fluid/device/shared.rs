@@ -96,7 +96,7 @@ corpuscle_gpu::declare! {
         }
     }
 
-    /// What the passes work on. Places are counted from the middle of the stage, m.
+    /// What the passes work on. Positions are counted from the middle of the stage, m.
     pub buffers Memory {
         /// Numbers of the picture.
         uniform water: Settings,
@@ -110,7 +110,7 @@ corpuscle_gpu::declare! {
         /// Particles in each cell.
         storage counts: [AtomicU32],
         /// The cell of each particle, and its number there.
-        storage places: [[u32; 2]],
+        storage cell_slots: [[u32; 2]],
         /// Numbers of particles, by which those of a cell are put in order.
         storage keys: [u32],
         /// The first particle of each cell.
@@ -119,7 +119,7 @@ corpuscle_gpu::declare! {
         storage order: [u32],
         /// Heights of the ground, m, row by row from the south-west; [`NO_HEIGHT`] where there is none.
         storage heights: [f32],
-        /// Columns of water: place, height and distance to the neighbours, m.
+        /// Columns of water: position, height and distance to the neighbours, m.
         storage sites: [[f32; 4]],
         /// Their motion: velocity east and north, m/s, and slope of the ground.
         storage motions: [[f32; 4]],
@@ -133,7 +133,7 @@ corpuscle_gpu::declare! {
         storage foam: [f32],
         /// Foam by ids as it was.
         storage before: [f32],
-        /// The bits of what will be: of numbers that are not negative, the greater has the greater bits. Where particles share a place in the memory, the
+        /// The bits of what will be: of numbers that are not negative, the greater has the greater bits. Where particles share a slot of the memory, the
         /// most foam stays, whichever comes first.
         storage after: [AtomicU32],
         /// The particles as they are drawn.

@@ -11,7 +11,7 @@ use corpuscle_model::{Column, ParticleSet, Values};
 
 /// Where all of it lies, m: coordinates are large.
 const CORNER: [f64; 3] = [612_000.0, 5_300_000.0, 400.0];
-/// Places and lengths over the stage's half diagonal; normals, parts of foam; depth, part of it.
+/// Positions and lengths over the stage's half diagonal; normals, parts of foam; depth, part of it.
 const NEAR: f32 = 2e-5;
 const LIKE: f32 = 2e-3;
 /// Mean difference of two pictures, of 255.
@@ -91,7 +91,7 @@ fn drawn(gpu: &Gpu, water: &DeviceWater) -> Vec<DropletInstance> {
 
 /// What the CPU draws, by ids.
 fn by_cpu(water: &mut Water, time: f64, set: &ParticleSet, field: &HeightField) -> Vec<DropletInstance> {
-    let mut droplets = water.droplets(time, set, |place| field.slope_at(place));
+    let mut droplets = water.droplets(time, set, |position| field.slope_at(position));
     droplets.sort_by_key(|droplet| droplet.id);
     droplets.iter().filter_map(|droplet| droplet.drawn(&stage())).collect()
 }
@@ -101,7 +101,7 @@ fn compare(device: &[DropletInstance], host: &[DropletInstance]) {
     let apart =
         |one: &[f32], other: &[f32]| one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max);
     for (one, other) in device.iter().zip(host) {
-        assert!(apart(&one.place, &other.place) < NEAR, "{one:?} {other:?}");
+        assert!(apart(&one.position, &other.position) < NEAR, "{one:?} {other:?}");
         assert!((one.radius - other.radius).abs() < NEAR, "{one:?} {other:?}");
         assert!((one.flatness - other.flatness).abs() < LIKE, "{one:?} {other:?}");
         assert!(apart(&one.normal, &other.normal) < LIKE, "{one:?} {other:?}");
@@ -139,14 +139,15 @@ fn the_water_at_the_borders_has_the_faces_that_the_cpu_finds() {
     device.update(&gpu, 0.0, &particles).unwrap();
     let (buffer, count) = device.faces().unwrap();
     let found: Vec<Vertex> = wait_for(read(&gpu, &buffer, count as usize)).unwrap();
-    let found: Vec<&[Vertex]> = found.chunks(6).filter(|face| face[0].place != face[1].place).collect();
-    let droplets = Water::default().droplets(0.0, &set, |place| field.slope_at(place));
+    let found: Vec<&[Vertex]> = found.chunks(6).filter(|face| face[0].position != face[1].position).collect();
+    let droplets = Water::default().droplets(0.0, &set, |position| field.slope_at(position));
     let wanted = faces(&stage(), &field, &droplets);
     // Ten of 130 lie in the corner without data.
     assert!(found.len() > 110 && wanted.len() == 6 * found.len(), "{} {}", found.len(), wanted.len());
     for (one, other) in found.concat().iter().zip(&wanted) {
         assert_eq!(one.normal, other.normal);
-        let apart = one.place.iter().zip(&other.place).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max);
+        let apart =
+            one.position.iter().zip(&other.position).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max);
         assert!(apart < NEAR, "{one:?} {other:?}");
     }
 }
@@ -171,7 +172,7 @@ fn a_picture_is_the_same_from_the_device() {
     send(&gpu, &set, &particles);
     device.update(&gpu, 0.0, &particles).unwrap();
     let one = picture(&gpu, |fluid| fluid.draw_from(&device));
-    let droplets = Water::default().droplets(0.0, &set, |place| field.slope_at(place));
+    let droplets = Water::default().droplets(0.0, &set, |position| field.slope_at(position));
     let other = picture(&gpu, |fluid| fluid.fill(&gpu, droplets));
     let nothing = picture(&gpu, |_| ());
     let difference = |one: &Image, other: &Image| {

@@ -13,13 +13,13 @@ fn border_node(water: Settings, number: u32) -> vec3u {
     let nodes = water.ground_nodes;
     let is_upright = number >= 2u * nodes.x;
     let count = select(nodes.x, nodes.y, is_upright);
-    let place = select(number, number - 2u * nodes.x, is_upright);
-    let along = place % count;
-    let across = select(0u, select(nodes.y, nodes.x, is_upright) - 1u, place >= count);
+    let index = select(number, number - 2u * nodes.x, is_upright);
+    let along = index % count;
+    let across = select(0u, select(nodes.y, nodes.x, is_upright) - 1u, index >= count);
     return vec3u(select(vec2u(along, across), vec2u(across, along), is_upright), u32(along + 1u == count));
 }
 
 // Where a node is, m.
-fn node_place(water: Settings, node: vec2u) -> vec2f {
+fn node_position(water: Settings, node: vec2u) -> vec2f {
     return water.ground_corner + vec2f(node) / water.ground_per_metre;
 }

@@ -2,9 +2,9 @@
 // those on the ground, and what is no particle is left out.
 #import water_device
 
-// Slope of the quad round a place, level where it has no ground. Twin of `HeightField::slope_at`.
-fn ground_slope(place: vec2f) -> vec2f {
-    let at = vec2u(max((place - water.ground_corner) * water.ground_per_metre, vec2f(0.0)));
+// Slope of the quad round a position, level where it has no ground. Twin of `HeightField::slope_at`.
+fn ground_slope(position: vec2f) -> vec2f {
+    let at = vec2u(max((position - water.ground_corner) * water.ground_per_metre, vec2f(0.0)));
     let quad = min(at, water.ground_nodes - 2u);
     let first = quad.y * water.ground_nodes.x + quad.x;
     let south = vec2f(heights[first], heights[first + 1u]);
@@ -24,10 +24,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let particle = seen.all[order[i]];
-    let place = vec3f(particle.place.xy, water.raise * particle.place.z) + water.shift;
+    let position = vec3f(particle.place.xy, water.raise * particle.place.z) + water.shift;
     // As wide as the water that it stands for where particles are sparse.
     let width = sqrt(particle.volume / max(particle.depth, 1e-12));
-    sites[i] = vec4f(place, clamp(width, particle.spacing, WIDEST * particle.spacing));
-    motions[i] = vec4f(particle.velocity.xy, ground_slope(place.xy));
+    sites[i] = vec4f(position, clamp(width, particle.spacing, WIDEST * particle.spacing));
+    motions[i] = vec4f(particle.velocity.xy, ground_slope(position.xy));
     matter[i] = vec4u(bitcast<u32>(particle.volume), particle.id, bitcast<vec2u>(particle.velocity.xy));
 }

@@ -19,6 +19,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let particle = seen.all[id.x];
     let cell = cell_of(particle);
-    places[id.x] = vec2u(cell, atomicAdd(&counts[cell], 1u));
+    cell_slots[id.x] = vec2u(cell, atomicAdd(&counts[cell], 1u));
     keys[id.x] = particle.id;
 }

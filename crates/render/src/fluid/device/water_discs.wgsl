@@ -18,14 +18,14 @@ fn numbered(i: u32) -> f32 {
 
 fn in_air(i: u32) -> DropletInstance {
     let radius = water.unit * pow(0.75 * volume(i) / PI, 1.0 / 3.0);
-    let place = water.unit * sites[i].xyz;
-    return DropletInstance(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY_FOAM, radius, numbered(i)), vec2f(0.0), vec2f(0.0));
+    let position = water.unit * sites[i].xyz;
+    return DropletInstance(position, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY_FOAM, radius, numbered(i)), vec2f(0.0), vec2f(0.0));
 }
 
-// Whether a place is no farther than that from a border of the ground, m.
-fn is_at_border(place: vec2f, reach: f32) -> bool {
-    let low = abs(place - water.ground_corner);
-    let high = abs(place - node_place(water, water.ground_nodes - 1u));
+// Whether a position is no farther than that from a border of the ground, m.
+fn is_at_border(position: vec2f, reach: f32) -> bool {
+    let low = abs(position - water.ground_corner);
+    let high = abs(position - node_position(water, water.ground_nodes - 1u));
     return min(min(low.x, low.y), min(high.x, high.y)) < OVER_REACH * reach;
 }
 

@@ -3,8 +3,8 @@
 
 fn corner(node: vec2u, level: f32, is_low: bool) -> vec4f {
     let ground = min(water.unit * heights[node.y * water.ground_nodes.x + node.x], level);
-    let place = water.unit * node_place(water, node);
-    return vec4f(place, select(level, ground, is_low), select(0.0, level - ground, is_low));
+    let position = water.unit * node_position(water, node);
+    return vec4f(position, select(level, ground, is_low), select(0.0, level - ground, is_low));
 }
 
 fn outwards(number: u32) -> vec4f {

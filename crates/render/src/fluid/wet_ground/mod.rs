@@ -1,4 +1,4 @@
-//! Ground that was under water stays darker until it has dried: when each place was last under water, and how high the water stood, from picture
+//! Ground that was under water stays darker until it has dried: when each position was last under water, and how high the water stood, from picture
 //! to picture.
 
 use crate::shared::WetGround as Parameters;
@@ -12,11 +12,11 @@ const MOST_CELLS: f64 = 2.0 * 1024.0 * 1024.0;
 #[derive(Debug)]
 pub(super) struct WetGround {
     parameters: Parameters,
-    pub uniforms: wgpu::Buffer,
+    uniforms: wgpu::Buffer,
     /// Time at which each cell was last under water, as the bits of a number of single precision above 0; 0: never.
-    pub latest: wgpu::Buffer,
+    latest: wgpu::Buffer,
     /// How high the water stood there at most: see wet_ground.wgsl.
-    pub levels: wgpu::Buffer,
+    levels: wgpu::Buffer,
     /// Time of the first picture and of the last, s; none before.
     times: Option<[f64; 2]>,
 }
@@ -30,7 +30,7 @@ impl WetGround {
         let cells = (size / width).ceil().max(glam::DVec2::ONE).as_uvec2();
         let number = cells.x as usize * cells.y as usize;
         let parameters = Parameters {
-            corner: stage.place(stage.from.into()).truncate().into(),
+            corner: stage.position(stage.from.into()).truncate().into(),
             per_unit: 1.0 / stage.length(width),
             soaked: stage.length(soaked),
             cells: cells.into(),
@@ -44,6 +44,15 @@ impl WetGround {
             levels: storage::<u32>(gpu, "levels of water", number)?,
             times: None,
         })
+    }
+
+    /// What shaders with `#import wet_ground` and the record of it have bound.
+    pub fn bindings(&self) -> [(&'static str, wgpu::BindingResource<'_>); 3] {
+        [
+            ("wet", self.uniforms.as_entire_binding()),
+            ("wet_latest", self.latest.as_entire_binding()),
+            ("wet_levels", self.levels.as_entire_binding()),
+        ]
     }
 
     /// Sets the time of the picture, s. One before that of the last picture begins anew.

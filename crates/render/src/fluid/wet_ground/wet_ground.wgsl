@@ -6,7 +6,7 @@
 // A height as a number that grows with it, for atomicMax: heights on a stage are above -LOWEST.
 const LOWEST: f32 = 4.0;
 
-// The position of a place on the grid: middles of cells are at .5.
-fn on_wet_grid(place: vec2f) -> vec2f {
-    return (place - wet.corner) * wet.per_unit;
+// A position on the grid: middles of cells are at .5.
+fn on_wet_grid(position: vec2f) -> vec2f {
+    return (position - wet.corner) * wet.per_unit;
 }

@@ -19,7 +19,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if droplet.matter.x <= 0.0 {
         return;
     }
-    let middle = on_wet_grid(droplet.place.xy);
+    let middle = on_wet_grid(droplet.position.xy);
     let reach = max(droplet.radius * wet.per_unit, 0.5);
     let most = vec2f(wet.cells);
     let first = vec2u(clamp(floor(middle - reach), vec2f(0.0), most));
@@ -29,7 +29,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         for (var column = first.x; column < end.x; column++) {
             let away = vec2f(f32(column), f32(row)) + 0.5 - middle;
             if dot(away, away) <= reach * reach {
-                let level = droplet.place.z - dot(slope, away) / wet.per_unit;
+                let level = droplet.position.z - dot(slope, away) / wet.per_unit;
                 let index = row * wet.cells.x + column;
                 atomicMax(&wet_latest[index], bitcast<u32>(wet.now));
                 atomicMax(&wet_levels[index], bitcast<u32>(max(level + LOWEST, 0.0)));

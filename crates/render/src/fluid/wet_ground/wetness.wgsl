@@ -7,9 +7,9 @@
 // Wet ground gives back so much less light.
 const WET: f32 = 0.4;
 
-// From 1 at a place that is or was just under water to 0 where it has dried, was never under water, or is above where the water stood.
-fn wetness(place: vec3f) -> f32 {
-    let at = on_wet_grid(place.xy) - 0.5;
+// From 1 at a position that is or was just under water to 0 where it has dried, was never under water, or is above where the water stood.
+fn wetness(position: vec3f) -> f32 {
+    let at = on_wet_grid(position.xy) - 0.5;
     let low = floor(at);
     let part = at - low;
     var sum = 0.0;
@@ -24,7 +24,7 @@ fn wetness(place: vec3f) -> f32 {
         if latest > 0u {
             let level = bitcast<f32>(wet_levels[index]) - LOWEST;
             let left = exp((bitcast<f32>(latest) - wet.now) * wet.drying);
-            let below = 1.0 - smoothstep(level, level + wet.soaked, place.z);
+            let below = 1.0 - smoothstep(level, level + wet.soaked, position.z);
             let share = mix(1.0 - part, part, vec2f(step));
             sum += share.x * share.y * left * below;
         }

@@ -156,7 +156,7 @@ fn depth_at(flood: &VoronoiFlood, wave: &Solitary, spacing: f64, x: f64, line: u
 fn shoreline(flood: &VoronoiFlood, wave: &Solitary, spacing: f64, land: f64, dry: f64) -> f64 {
     let step = 0.1 * spacing;
     let on_line = |line: usize| {
-        let is_wet = |place: &usize| depth_at(flood, wave, spacing, *place as f64 * step - land, line) > dry;
+        let is_wet = |index: &usize| depth_at(flood, wave, spacing, *index as f64 * step - land, line) > dry;
         let wet = (0..).find(is_wet).unwrap_or(0);
         (land - wet as f64 * step) / COTANGENT
     };
@@ -224,12 +224,12 @@ fn against_exact(exact: &[Vec<Option<f64>>], spacing: f64, seed: u64) -> Result<
         let Some(column) = TIMES.iter().position(|of_profile| *of_profile == time) else { continue };
         let level = |row: &Vec<Option<f64>>| row.get(column + 1).copied().flatten();
         let shore = exact.iter().position(|row| level(row).is_some()).unwrap_or(0);
-        for (place, row) in exact.iter().enumerate() {
+        for (index, row) in exact.iter().enumerate() {
             let Some(x) = row[0] else { continue };
             let ground = (-x / COTANGENT).max(-1.0);
             let depth = (0..LINES).map(|line| depth_at(&flood, &wave, spacing, x, line)).sum::<f64>() / LINES as f64;
-            // Inland of the shore the depth itself is the error; one place at sea has no value.
-            let Some(level) = level(row).or((place < shore).then_some(ground)) else { continue };
+            // Inland of the shore the depth itself is the error; one position at sea has no value.
+            let Some(level) = level(row).or((index < shore).then_some(ground)) else { continue };
             let error = (ground + depth - level).abs();
             (far, sum, count) = (far.max(error), sum + error * error, count + 1.0);
         }

@@ -40,7 +40,7 @@ pub(in super::super) const FINER: Case = Case {
     run: finer,
 };
 
-/// Length of the channel and place of the dam, m, depth above it, m, and time, s.
+/// Length of the channel and position of the dam, m, depth above it, m, and time, s.
 const LENGTH: f64 = 1000.0;
 const DAM: f64 = 500.0;
 const UPSTREAM: f64 = 10.0;
@@ -142,7 +142,7 @@ pub(in super::super) fn error(flood: &VoronoiFlood, spacing: f64, downstream: f6
     error_within(flood, spacing, downstream, 0..LENGTH as usize)
 }
 
-/// The same between two places along the channel, m.
+/// The same between two positions along the channel, m.
 fn error_within(flood: &VoronoiFlood, spacing: f64, downstream: f64, metres: Range<usize>) -> f64 {
     let (mut wrong, mut right) = (0.0, 0.0);
     for metre in metres {

@@ -93,11 +93,11 @@ fn flume(folder: &Path) -> Result<Settings, ModelError> {
         ..Obstacle::default()
     };
     settings.obstacle = ["dam_1", "dam_2", "building"].map(obstacle).into();
-    let places = table(&folder.join("point_gauges.csv"), 1)?;
-    let gauge = |(number, place): (usize, &Vec<Option<f64>>)| {
-        let at = Some([place[0].unwrap_or(0.0), place[1].unwrap_or(0.0)]);
+    let positions = table(&folder.join("point_gauges.csv"), 1)?;
+    let gauge = |(number, position): (usize, &Vec<Option<f64>>)| {
+        let at = Some([position[0].unwrap_or(0.0), position[1].unwrap_or(0.0)]);
         Gauge { name: format!("G{}", number + 1), at, lon_lat: None }
     };
-    settings.gauge = places.iter().take(6).enumerate().map(gauge).collect();
+    settings.gauge = positions.iter().take(6).enumerate().map(gauge).collect();
     Ok(settings)
 }

@@ -31,8 +31,8 @@ const TIME: f64 = 4000.0;
 /// Interval of the samples, s.
 const SAMPLE_PERIOD: f64 = 2.0;
 
-/// A place of the survey or of the scale model: its name, where it is, the highest level, m, and the arrival, s.
-struct Place {
+/// A station of the survey or of the scale model: its name, where it is, the highest level, m, and the arrival, s.
+struct Station {
     name: String,
     at: [f64; 2],
     level: f64,
@@ -48,9 +48,9 @@ fn malpasset(options: &Options) -> Vec<Row> {
 
 /// Results of a run.
 struct Found {
-    /// Highest level at each place, m.
+    /// Highest level at each station, m.
     highest: Vec<f64>,
-    /// Arrival at each place, s.
+    /// Arrival at each station, s.
     arrival: Vec<f64>,
     water: f64,
 }
@@ -62,14 +62,14 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
     let [wide, middle, fine] = found;
     let (wide, middle, fine) = (wide?, middle?, fine?);
     let errors = |found: &Found| -> Vec<f64> {
-        police.iter().zip(&found.highest).map(|(place, highest)| highest - place.level).collect()
+        police.iter().zip(&found.highest).map(|(station, highest)| highest - station.level).collect()
     };
     let change = |a: &Found, b: &Found| {
         let changes: Vec<f64> = a.highest.iter().zip(&b.highest).map(|(a, b)| a - b).collect();
         root_mean_square(&changes)
     };
     let late = gauges.iter().zip(&fine.arrival[police.len()..]);
-    let late: Vec<f64> = late.filter_map(|(place, arrival)| Some(arrival - place.arrival?)).collect();
+    let late: Vec<f64> = late.filter_map(|(station, arrival)| Some(arrival - station.arrival?)).collect();
     let changes = [change(&wide, &middle), change(&middle, &fine)];
     let at_most = |measure, value, unit, bound| Row::at_most(MALPASSET.name, measure, value, unit, bound);
     let fine_errors = errors(&fine);
@@ -97,13 +97,13 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
 /// Runs it with particles `spacing` m apart.
 fn run<'a>(
     folder: &Path,
-    places: impl Iterator<Item = &'a Place>,
+    stations: impl Iterator<Item = &'a Station>,
     spacing: f64,
     seed: u64,
 ) -> Result<Found, ModelError> {
     let mut settings = settings(spacing, 0.033, Edges::default());
-    let gauge = |place: &Place| Gauge { name: place.name.clone(), at: Some(place.at), lon_lat: None };
-    settings.gauge = places.map(gauge).collect();
+    let gauge = |station: &Station| Gauge { name: station.name.clone(), at: Some(station.at), lon_lat: None };
+    settings.gauge = stations.map(gauge).collect();
     let raster = folder.join("initial-depth-20m.tif");
     settings.water = vec![Water { depth_raster: Some(raster), ..Water::default() }];
     let ground = TerrainFile { path: folder.join("bed-20m.tif"), crs: None, no_data: NoData::Wall };
@@ -131,16 +131,16 @@ fn watch(flood: &mut impl Model, gauges: usize) -> Result<(Vec<f64>, Vec<f64>), 
 }
 
 /// Reads name, x, y, highest level and, where there is one, arrival.
-fn read(path: &Path) -> Result<Vec<Place>, ModelError> {
+fn read(path: &Path) -> Result<Vec<Station>, ModelError> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| ModelError::Setup(format!("{} cannot be read: {error}", path.display())))?;
-    let place = |line: &str| {
+    let station = |line: &str| {
         let mut fields = line.split(',').map(str::trim);
         let name = fields.next()?.to_string();
         let mut number = || fields.next()?.parse::<f64>().ok();
-        Some(Place { name, at: [number()?, number()?], level: number()?, arrival: number() })
+        Some(Station { name, at: [number()?, number()?], level: number()?, arrival: number() })
     };
-    let parsed = text.lines().skip(1).filter(|line| !line.trim().is_empty()).map(place);
+    let parsed = text.lines().skip(1).filter(|line| !line.trim().is_empty()).map(station);
     parsed.collect::<Option<_>>().ok_or_else(|| ModelError::Setup(format!("{} is not as expected", path.display())))
 }
 

@@ -1,4 +1,4 @@
-//! Random numbers of places.
+//! Random numbers of positions.
 
 /// A number between -1 and 1 for each square `width` m wide, the same for the same seed.
 pub(super) fn squares(width: f64, seed: u64) -> impl Fn(f64, f64) -> f64 + Copy + Send + Sync {

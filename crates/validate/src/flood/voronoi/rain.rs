@@ -42,11 +42,11 @@ fn at_foot(time: f64) -> f64 {
     if time <= RAINS {
         return discharge(INTENSITY * time).min(steady);
     }
-    let place = |depth: f64| discharge(depth) / INTENSITY + 5.0 / 3.0 * discharge(depth) / depth * (time - RAINS);
+    let position = |depth: f64| discharge(depth) / INTENSITY + 5.0 / 3.0 * discharge(depth) / depth * (time - RAINS);
     let (mut low, mut high) = (0.0, INTENSITY * RAINS);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
-        if place(middle) > LENGTH { high = middle } else { low = middle }
+        if position(middle) > LENGTH { high = middle } else { low = middle }
     }
     discharge(low).min(steady)
 }

@@ -42,7 +42,7 @@ pub(super) fn bowl() -> Arc<Terrain> {
     }))
 }
 
-/// Height of the surface and velocity at a place and a time.
+/// Height of the surface and velocity at a position and a time.
 pub(super) type Exact = fn(x: f64, y: f64, t: f64) -> (f64, [f64; 2]);
 
 pub(super) fn omega() -> f64 {

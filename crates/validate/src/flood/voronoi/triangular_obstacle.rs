@@ -38,25 +38,25 @@ const SAMPLE_PERIOD: f64 = 0.02;
 const ARRIVED: f64 = 0.01;
 
 /// A gauge: how far below the dam, m, whether it starts dry, and what its measures are called.
-struct Place {
+struct Station {
     below: f64,
     file: &'static str,
     depth: &'static str,
     arrival: Option<&'static str>,
 }
 
-const PLACES: [Place; 4] = [
-    Place { below: 4.0, file: "G4", depth: "depth_rmse_G4", arrival: Some("arrival_error_G4") },
-    Place { below: 10.0, file: "G10", depth: "depth_rmse_G10", arrival: Some("arrival_error_G10") },
-    Place { below: 13.0, file: "G13", depth: "depth_rmse_G13", arrival: Some("arrival_error_G13") },
-    Place { below: 20.0, file: "G20", depth: "depth_rmse_G20", arrival: None },
+const STATIONS: [Station; 4] = [
+    Station { below: 4.0, file: "G4", depth: "depth_rmse_G4", arrival: Some("arrival_error_G4") },
+    Station { below: 10.0, file: "G10", depth: "depth_rmse_G10", arrival: Some("arrival_error_G10") },
+    Station { below: 13.0, file: "G13", depth: "depth_rmse_G13", arrival: Some("arrival_error_G13") },
+    Station { below: 20.0, file: "G20", depth: "depth_rmse_G20", arrival: None },
 ];
 
 /// Measures that the equations themselves miss: so does a second-order finite-volume solution of them on cells of 2 cm
 /// (0.055 m, 0.48 s and 0.43 s), which takes the measured series to start some 0.3 s late.
 const MISSED: [&str; 3] = ["depth_rmse_G10", "arrival_error_G10", "arrival_error_G13"];
 
-impl Place {
+impl Station {
     fn row(case: &str, measure: &'static str, value: f64, unit: &'static str, bound: f64) -> Row {
         if MISSED.contains(&measure) {
             let why = "known to miss: a second-order finite-volume solution misses it as well";
@@ -84,14 +84,14 @@ fn compare(flood: &mut VoronoiFlood, folder: &Path, options: &Options) -> Result
     let case = TRIANGULAR_OBSTACLE.name;
     let seen = Watched::run(flood, TIME, SAMPLE_PERIOD)?;
     let mut out = Vec::new();
-    for (gauge, place) in PLACES.iter().enumerate() {
-        let measured = depths(&folder.join(format!("{}_Experimental.csv", place.file)))?;
-        options.draw(seen.chart(4 * gauge, place.file, "Depth", "m", measured.clone()));
+    for (gauge, station) in STATIONS.iter().enumerate() {
+        let measured = depths(&folder.join(format!("{}_Experimental.csv", station.file)))?;
+        options.draw(seen.chart(4 * gauge, station.file, "Depth", "m", measured.clone()));
         let even = evenly(&measured).into_iter().map(|[time, depth]| [seen.at(time, 4 * gauge), depth]);
-        out.push(Place::row(case, place.depth, root_mean_square(even), "m", 0.05));
-        if let Some(name) = place.arrival {
+        out.push(Station::row(case, station.depth, root_mean_square(even), "m", 0.05));
+        if let Some(name) = station.arrival {
             let error = (seen.first(4 * gauge, ARRIVED) - measured[0][0]).abs();
-            out.push(Place::row(case, name, error, "s", 0.3));
+            out.push(Station::row(case, name, error, "s", 0.3));
         }
     }
     let water = flood.ledger().balances[0].relative_error().abs();
@@ -102,9 +102,12 @@ fn compare(flood: &mut VoronoiFlood, folder: &Path, options: &Options) -> Result
 /// The channel, closed at both ends: behind the sill the measured water stays as high as its crest.
 fn channel() -> Settings {
     let mut settings = settings(SPACING, 0.0125, all_sides(&Edge::Wall));
-    let gauge =
-        |place: &Place| Gauge { name: place.file.into(), at: Some([DAM + place.below, 0.5 * WIDTH]), lon_lat: None };
-    settings.gauge = PLACES.iter().map(gauge).collect();
+    let gauge = |station: &Station| Gauge {
+        name: station.file.into(),
+        at: Some([DAM + station.below, 0.5 * WIDTH]),
+        lon_lat: None,
+    };
+    settings.gauge = STATIONS.iter().map(gauge).collect();
     settings
 }
 

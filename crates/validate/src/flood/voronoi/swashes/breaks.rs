@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Place, depth, ground.
+/// Position, depth, ground.
 const COLUMNS: [usize; 3] = [0, 1, 3];
 
 /// Two pools before and behind a dam in the middle of a strip between walls, depths `[before, behind]`, m, after `time` s.

@@ -10,7 +10,7 @@ use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Place, depth, ground.
+/// Position, depth, ground.
 const COLUMNS: [usize; 3] = [0, 1, 3];
 
 /// Flow is steady when depths change by less than this part of their mean while a wave crosses the channel.

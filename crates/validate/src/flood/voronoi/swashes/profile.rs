@@ -7,7 +7,7 @@ use std::path::Path;
 /// Lines across a channel along which it is measured.
 const LINES: usize = 7;
 
-/// Depth and ground at places along a channel, evenly apart; cubic between them.
+/// Depth and ground at positions along a channel, evenly apart; cubic between them.
 #[derive(Debug, Clone)]
 pub(super) struct Profile {
     pub x: Vec<f64>,
@@ -16,7 +16,7 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// Reads the columns for place, depth and ground (numbered from 0).
+    /// Reads the columns for position, depth and ground (numbered from 0).
     pub fn read(path: &Path, columns: [usize; 3]) -> Result<Self, ModelError> {
         let rows = numbers(path)?;
         let column = |k: usize| rows.iter().map(|row| row.get(k).copied().unwrap_or(f64::NAN)).collect();
@@ -34,17 +34,17 @@ impl Profile {
         Ok(Self { ground: vec![0.0; x.len()], x, depth })
     }
 
-    /// Distance between places, m.
+    /// Distance between positions, m.
     pub fn step(&self) -> f64 {
         self.x[1] - self.x[0]
     }
 
-    /// From the first side of the first place's cell to the last side of the last one's, m.
+    /// From the first side of the first position's cell to the last side of the last one's, m.
     pub fn length(&self) -> f64 {
         self.x.len() as f64 * self.step()
     }
 
-    /// A column at a place and its slope, by a cubic through four values (Catmull & Rom 1974); beyond the ends as at them.
+    /// A column at a position and its slope, by a cubic through four values (Catmull & Rom 1974); beyond the ends as at them.
     fn between(&self, values: &[f64], x: f64) -> (f64, f64) {
         let last = values.len() as i64 - 1;
         let at = (x - self.x[0]) / self.step();
@@ -71,14 +71,14 @@ impl Profile {
         })
     }
 
-    /// Slope of the ground at a place; beyond the ends that at them.
+    /// Slope of the ground at a position; beyond the ends that at them.
     pub fn slope_at(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
         let (first, last) = (self.x[0] + self.step(), self.x[last] - self.step());
         self.between(&self.ground, x.clamp(first, last)).1
     }
 
-    /// mean |h - h_exact| / mean h_exact over all places, and lines across a strip `width` m wide.
+    /// mean |h - h_exact| / mean h_exact over all positions, and lines across a strip `width` m wide.
     pub fn error_of(&self, depth: impl Fn(f64, f64) -> f64, width: f64) -> f64 {
         let (mut wrong, mut right) = (0.0, 0.0);
         for (&x, &exact) in self.x.iter().zip(&self.depth) {

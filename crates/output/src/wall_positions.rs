@@ -6,20 +6,20 @@ use std::path::Path;
 
 /// Positions of the moving walls, from a run's gauges.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WallPlaces {
+pub struct WallPositions {
     times: Vec<f64>,
-    walls: Vec<WallPlace>,
+    walls: Vec<MovingWall>,
 }
 
-/// A wall across an axis, at its smaller or larger end, and its places.
+/// A wall across an axis, at its smaller or larger end, and its positions.
 #[derive(Debug, Clone, PartialEq)]
-struct WallPlace {
+struct MovingWall {
     axis: usize,
     is_upper: bool,
-    places: Vec<f64>,
+    positions: Vec<f64>,
 }
 
-impl WallPlaces {
+impl WallPositions {
     /// Reads the positions of a run from its gauges; empty where no wall moves.
     ///
     /// # Errors
@@ -33,19 +33,19 @@ impl WallPlaces {
             let name = format!("{}_{}.position", ["x", "y", "z"][axis], if is_upper { "max" } else { "min" });
             // With its unit, where the scene has units.
             let column = gauges.columns.iter().find(|column| **column == name || **column == format!("{name}_m"))?;
-            Some(WallPlace { axis, is_upper, places: gauges.column(column)? })
+            Some(MovingWall { axis, is_upper, positions: gauges.column(column)? })
         };
         let walls = (0..3).flat_map(|axis| [false, true].map(|is_upper| wall(axis, is_upper))).flatten().collect();
         Self { times: gauges.times.clone(), walls }
     }
 
-    /// A box as it was at a time, s; straight between two rows. Walls without a place stay where they are in `start`.
+    /// A box as it was at a time, s; straight between two rows. Walls without a position stay where they are in `start`.
     pub fn container(&self, start: Container, time: f64) -> Container {
         let mut container = start;
         for wall in &self.walls {
-            let place = between(&self.times, &wall.places, time);
+            let position = between(&self.times, &wall.positions, time);
             let corner = if wall.is_upper { &mut container.to } else { &mut container.from };
-            corner[wall.axis] = place.unwrap_or(corner[wall.axis]);
+            corner[wall.axis] = position.unwrap_or(corner[wall.axis]);
         }
         container
     }
@@ -57,7 +57,7 @@ fn between(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
     let before = after.saturating_sub(1);
     let span = times[after] - times[before];
     let part = if span > 0.0 { ((time - times[before]) / span).clamp(0.0, 1.0) } else { 1.0 };
-    Some(values[before] + part * (values[after] - values[before])).filter(|place| place.is_finite())
+    Some(values[before] + part * (values[after] - values[before])).filter(|position| position.is_finite())
 }
 
 #[cfg(test)]
@@ -72,15 +72,15 @@ mod tests {
                 times: vec![0.0, 10.0, 20.0],
                 rows: vec![vec![1.0, 400.0], vec![1.0, 300.0], vec![1.0, 340.0]],
             };
-            let walls = WallPlaces::of(&gauges);
+            let walls = WallPositions::of(&gauges);
             let start = Container { from: [0.0; 3], to: [400.0, 200.0, 0.0] };
-            for (time, place) in
+            for (time, position) in
                 [(0.0, 400.0), (5.0, 350.0), (10.0, 300.0), (15.0, 320.0), (20.0, 340.0), (21.0, 340.0)]
             {
-                assert_eq!(walls.container(start, time), Container { to: [place, 200.0, 0.0], ..start }, "{time}");
+                assert_eq!(walls.container(start, time), Container { to: [position, 200.0, 0.0], ..start }, "{time}");
             }
         }
-        let nothing = WallPlaces::of(&GaugeTable::default());
+        let nothing = WallPositions::of(&GaugeTable::default());
         let start = Container { from: [0.0; 3], to: [4.0; 3] };
         assert_eq!(nothing.container(start, 3.0), start);
     }

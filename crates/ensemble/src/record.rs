@@ -1,7 +1,7 @@
 //! The record of a member.
 
 use crate::EnsembleError;
-use crate::folder::{FORMAT, write_text};
+use crate::layout::{FORMAT, write_text};
 use corpuscle::output::Summary;
 use corpuscle::terrain::MapGrid;
 use serde::{Deserialize, Serialize};
