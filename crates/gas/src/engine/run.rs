@@ -1,7 +1,7 @@
 //! The loop over events.
 
 use super::Engine;
-use crate::method::Pause;
+use crate::pause::Pause;
 use crate::world::{Mode, NONE, in_mode};
 use multiversion::multiversion;
 

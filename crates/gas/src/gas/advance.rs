@@ -1,7 +1,8 @@
 //! Moving a gas on: events, and in between what happens by plan.
 
 use super::{Due, Gas};
-use crate::method::{Mover, Pause};
+use crate::method::Mover;
+use crate::pause::Pause;
 use crate::world::Ball;
 use corpuscle_model::{CompensatedSum, ModelError};
 use std::sync::atomic::{AtomicBool, Ordering};

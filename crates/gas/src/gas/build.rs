@@ -1,9 +1,9 @@
 //! Making a gas from a set-up.
 
-use super::{Gas, Plan, Set};
+use super::{Gas, Plan};
 use crate::SetupError;
 use crate::engine::Engine;
-use crate::measure::Measures;
+use crate::measure::{Measures, Set};
 use crate::method::{FixedStep, List, Mover};
 use crate::setup::{Method, Placed, Region, Setup};
 use crate::world::{CountedRegion, Field, Followed, Kind, Rebound, Slide, Start, World};

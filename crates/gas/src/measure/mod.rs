@@ -24,6 +24,17 @@ use serde::{Deserialize, Serialize};
 /// Samples between two counts of pairs, which take longer than the rest.
 const SAMPLES_PER_PAIR_COUNT: usize = 8;
 
+/// Balls of one name.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Set {
+    /// The name.
+    pub name: String,
+    /// Mass of a ball: of the first of them.
+    pub mass: f64,
+    /// Colour that the scene gives, if any.
+    pub colour: Option<String>,
+}
+
 /// Everything measured so far.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Measures {

@@ -1,7 +1,7 @@
 //! The old method: equal steps, after each of which all pairs are tested. Balls overlap, and pass through one another; both are
 //! counted.
 
-use super::Pause;
+use crate::pause::Pause;
 use crate::world::{Facing, Falling, Mode, Path, Quadratic, Straight, World};
 use serde::{Deserialize, Serialize};
 

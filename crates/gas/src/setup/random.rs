@@ -9,7 +9,7 @@ use crate::SetupError;
 use crate::engine::Engine;
 use crate::functions::pow;
 use crate::hash::Hash;
-use crate::method::Pause;
+use crate::pause::Pause;
 use crate::random::normal;
 use crate::world::{Facing, Field, Kind, Start, Wall, World};
 use rand::RngExt;
