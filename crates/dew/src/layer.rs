@@ -1,8 +1,9 @@
 //! Distance of the air from a solid, and the energy that keeping it out costs: to compare wall models.
 
-use crate::contact::Contact;
-use crate::dew::Dew;
+use crate::room::Room;
+use crate::solids::contact::Contact;
 use crate::solids::{Body, Surface};
+use corpuscle_processes::Processes;
 
 /// Width of the sampled layer of air before a surface, in spacings; that behind it is as wide.
 const LAYER_WIDTH: f64 = 2.0;
@@ -33,9 +34,9 @@ pub(crate) struct Found {
 }
 
 impl Layer {
-    /// Of a body whose surface is known.
-    pub fn new(body: &Body, dew: &Dew) -> Option<Self> {
-        let (room, spacing) = (&dew.room, dew.scale.spacing);
+    /// Of a body whose surface is known, in a room with air particles a `spacing` apart, m. `contacts` are those with the particles of the solids and with
+    /// ghost samples.
+    pub fn new(body: &Body, room: &Room, spacing: f64, contacts: [&Contact; 2]) -> Option<Self> {
         let surface = body.surface.clone()?;
         let width = LAYER_WIDTH * spacing;
         let along = |axis: usize| body.positions.iter().map(move |place| place[axis]);
@@ -43,7 +44,7 @@ impl Layer {
         let low = [0, 1, 2].map(|axis| (along(axis).fold(f64::INFINITY, f64::min) - reach).max(room.low[axis]));
         let high = [0, 1, 2].map(|axis| (along(axis).fold(f64::NEG_INFINITY, f64::max) + reach).min(room.high[axis]));
         let mut layer = Self { surface, width, low, high, volumes: [0.0; 2], sites: [Vec::new(), Vec::new()] };
-        layer.sites = [&dew.contact, &dew.ghosts].map(|contact| {
+        layer.sites = contacts.map(|contact| {
             let sites = contact.sites.iter().enumerate();
             let inside = sites.filter(|(_, site)| layer.is_near(site.position) && (layer.surface)(site.position) < 0.0);
             inside.map(|(number, _)| number).collect()
@@ -78,18 +79,24 @@ impl Layer {
         (0..3).all(|axis| (self.low[axis]..self.high[axis]).contains(&place[axis]))
     }
 
-    /// What is found in the air as it stands.
-    pub fn find(&self, dew: &Dew) -> Found {
-        let places = dew.inside().map(|particle| particle.position).filter(|&place| self.is_near(place));
+    /// What is found in the air as it stands, at these positions. Of the sites of both `contacts` this process counts those that it owns.
+    pub fn find(
+        &self,
+        air: impl Iterator<Item = [f64; 3]>,
+        contacts: [&Contact; 2],
+        owns: impl Fn([f64; 3]) -> bool,
+        processes: &Processes,
+    ) -> Found {
+        let places = air.filter(|&place| self.is_near(place));
         let (nearest, own) = self.count(places);
         let pairs_of = |(sites, contact): (&Vec<usize>, &Contact)| {
-            let own = sites.iter().filter(|&&site| dew.owns(contact.sites[site].position));
+            let own = sites.iter().filter(|&&site| owns(contact.sites[site].position));
             own.map(|&site| contact.of_site(site).len()).sum::<usize>()
         };
-        let pairs: usize = self.sites.iter().zip([&dew.contact, &dew.ghosts]).map(pairs_of).sum();
+        let pairs: usize = self.sites.iter().zip(contacts).map(pairs_of).sum();
         let mut counts = [i64::from(own[0]), i64::from(own[1]), pairs as i64];
-        dew.processes.total(&mut counts, &mut []);
-        let nearest = dew.processes.least(nearest);
+        processes.total(&mut counts, &mut []);
+        let nearest = processes.least(nearest);
         let [before, behind] = [0, 1].map(|layer| counts[layer] as f64 / self.volumes[layer]);
         Found { nearest, gap: self.width * (1.0 - before / behind), pairs: counts[2] as f64 }
     }

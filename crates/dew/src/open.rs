@@ -1,7 +1,6 @@
 //! From a scene to a model.
 
-use crate::air::{Properties, TemperatureCoefficients};
-use crate::bodies;
+use crate::air::{LEAST_SOUND, Properties, SOUND_OVER_MOTION, TemperatureCoefficients};
 use crate::dew::{Dew, Setup};
 use crate::drops::{DropLaws, MOST_SITES, Retention, WATER_DENSITY, most_per_area, smallest_reach};
 use crate::fan::Fan;
@@ -10,7 +9,7 @@ use crate::layer::Layer;
 use crate::room::{Face, Inflow, Room};
 use crate::settings::{Condensation, Humidity, LowUtility, Mean, Settings, WallTreatment};
 use crate::solids::sources::HeatSources;
-use crate::solids::{Body, Surface};
+use crate::solids::{Body, Surface, bodies};
 use corpuscle_model::ModelError;
 use corpuscle_processes::Processes;
 use corpuscle_scene::Axis;
@@ -18,12 +17,6 @@ use corpuscle_scene::dew::{self as written, HumidityTransport, Scheme, Treatment
 use corpuscle_solids::Solid;
 use std::path::Path;
 use std::sync::Arc;
-
-/// The speed of sound over the fastest motion: the density then stays within a percent (Monaghan 1994).
-pub(crate) const SOUND_OVER_MOTION: f64 = 10.0;
-
-/// Least speed of sound, m/s: air at rest stays evenly spread.
-pub(crate) const LEAST_SOUND: f64 = 0.1;
 
 /// Makes the model of a scene; `seed` is that of everything random, relative paths are taken from `folder`.
 ///
@@ -56,7 +49,9 @@ pub fn open_on(processes: &Processes, scene: &written::Dew, seed: u64, folder: &
     if scene.air.velocity_m_per_s != [0.0; 3] {
         dew.stir(|_| scene.air.velocity_m_per_s);
     }
-    let layer = |body: &Body| body.walls.and_then(|_| Layer::new(body, &dew));
+    let layer = |body: &Body| {
+        body.walls.and_then(|_| Layer::new(body, &dew.room, dew.scale.spacing, [&dew.contact, &dew.ghosts]))
+    };
     dew.layers = setup.bodies.iter().map(layer).collect();
     dew.names = bodies.iter().map(|body| body.name.clone()).collect();
     dew.add_walls(&bodies);

@@ -1,8 +1,8 @@
 //! Particles of air from the host's numbers to the shaders' and back.
 
-use super::shared::{self, COMING, FACE_BITS, IDLE, INSIDE, LEAVING, OUTSIDE, ROLE_MASK, STILL};
 use crate::air::{Particle, Role};
 use crate::room::Room;
+use crate::shared::{self, COMING, FACE_BITS, IDLE, INSIDE, LEAVING, OUTSIDE, ROLE_MASK, STILL};
 use corpuscle_gpu::{from_pair, to_pair};
 
 /// Where the shaders count from.

@@ -1,9 +1,10 @@
 //! What solids do to the motion of the air.
 
 use crate::air::{Arrangement, Column, Properties, Rates, Scale, Sums};
-use crate::contact::{Contact, Near, Pair};
+use crate::constants::{RANGE, STRENGTH};
 use crate::normalisation::{self, Moments};
 use crate::settings::WallTreatment;
+use crate::solids::contact::{Contact, Near, Pair};
 use corpuscle_sph::kernel::SmoothingKernel;
 use rayon::prelude::*;
 
@@ -73,13 +74,6 @@ pub struct Push<'a> {
     /// The constant kappa of the density.
     pub kappa: f64,
 }
-
-/// Repulsion at the distance at which it begins, over the square of the speed of sound and the spacing's inverse
-/// (Monaghan 1994 takes the square of the fastest speed, a hundredth of that; the strong force is to hold at any speed).
-pub(crate) const STRENGTH: f64 = 0.3;
-
-/// Distance from a solid's particle at which repulsion begins, over the spacing.
-pub(crate) const RANGE: f64 = 1.5;
 
 /// Distance, over the spacing, at which the repulsion is so weak that air at rest stays slow.
 pub const CALM: f64 = 1.3;

@@ -3,9 +3,8 @@
 //! Cells are the same for any distribution of the air over processes, and within a cell particles stand by their identities: so neighbours have the same order
 //! everywhere.
 
-use super::Particle;
-use crate::domain::HaloParticle;
-use crate::faces::BEYOND;
+use super::{HaloParticle, Particle};
+use crate::constants::BEYOND;
 use crate::room::{Face, Room};
 use corpuscle_sph::{Cells, FEWEST, NeighbourLists};
 use rayon::prelude::*;

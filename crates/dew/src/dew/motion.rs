@@ -1,24 +1,16 @@
 //! How the air moves in a step, and how long a step may be.
 
 use super::Dew;
-use crate::air::{Arrangement, Column, Entry, Part, Particle, Properties, Rates, Role, Sums, sum_pairs};
-use crate::domain::{Halo, HaloParticle};
-use crate::humid_air::{self, HumidAir};
+use crate::air::{Arrangement, Column, Entry, HaloParticle, Part, Particle, Properties, Rates, Role, Sums, sum_pairs};
+use crate::constants::{ACCELERATION_LIMIT, DIFFUSION_LIMIT, FARTHEST_SPREAD};
+use crate::domain::Halo;
+use crate::humid_air::{self, HumidAir, virtual_temperature};
 use crate::normalisation::{self, Tensor};
 use crate::room::Room;
 use crate::settings::Humidity;
 use crate::walls::{self, Push};
 use corpuscle_processes::Processes;
 use rayon::prelude::*;
-
-/// Acceleration limits the time step: this times the root of spacing over acceleration.
-pub(crate) const ACCELERATION_LIMIT: f64 = 0.25;
-
-/// Part of the longest step for which no diffusion overshoots its neighbours.
-pub(crate) const DIFFUSION_LIMIT: f64 = 0.9;
-
-/// A particle is not moved farther than this in a step to be evened out among its neighbours, in spacings.
-pub(crate) const FARTHEST_SPREAD: f64 = 0.05;
 
 /// The largest of what limits the time step.
 #[derive(Debug, Clone, Copy, Default)]
@@ -216,14 +208,6 @@ impl Dew {
             f64::NAN
         }
     }
-}
-
-/// How much lighter vapour makes air: the coefficient of its mass fraction in the virtual temperature (Stull 1988, equation 1.5.1).
-pub(crate) const VAPOUR_LIGHTNESS: f64 = 0.608;
-
-/// T (1 + 0.608 Y), K: temperature at which dry air is as light.
-fn virtual_temperature(temperature: f64, vapour: f64) -> f64 {
-    temperature * (1.0 + VAPOUR_LIGHTNESS * vapour)
 }
 
 /// Sets the densities of particles.

@@ -3,10 +3,10 @@
 //! Both sides of a pair find the same flux from the same numbers, so nothing is made or lost but by rounding.
 
 use crate::air::{Arrangement, Column, Particle, Properties, Scale};
-use crate::contact::{Contact, Near, Pair};
 use crate::humid_air::HumidAir;
 use crate::normalisation;
 use crate::settings::{Condensation, Settings};
+use crate::solids::contact::{Contact, Near, Pair};
 use crate::solids::{Site, Solids};
 use corpuscle_sph::kernel::SmoothingKernel;
 use rayon::prelude::*;

@@ -1,11 +1,11 @@
 //! Air that comes in by inlets, layer by layer.
 
-use super::{before_inlet, placed};
+use super::{before_inlet, placed, slowest};
 use crate::air::Particle;
-use crate::dew::Dew;
+use crate::inventory::Inventory;
 use crate::room::{Face, Inflow};
 
-impl Dew {
+impl Inventory<'_> {
     /// Lets air come in by all inlets.
     pub(super) fn let_in(&mut self, step: f64) {
         for axis in 0..3 {
@@ -36,7 +36,7 @@ impl Dew {
                     let particle = Particle::new(self.state.next_id, place, inflow.temperature, inflow.vapour);
                     self.state.next_id += 1;
                     if self.owns(place) {
-                        self.state.air.push(placed(particle, &self.room, self.slowest()));
+                        self.state.air.push(placed(particle, self.room, slowest(self.air)));
                     }
                 }
             }

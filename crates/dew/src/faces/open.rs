@@ -5,9 +5,9 @@
 //! Applied Mechanics and Engineering 342, 2018, 604), with columns for its ghost nodes. Air that goes out meets the pressure of
 //! the air outside, that of rest; air that comes in has come from rest, and its pressure is lower by rho u^2 / 2 (Bernoulli).
 
-use super::BEYOND;
 use crate::air::{Particle, Role, Scale};
-use crate::dew::Dew;
+use crate::constants::BEYOND;
+use crate::inventory::Inventory;
 use crate::room::{Face, Room};
 use corpuscle_model::{ROUNDERS, ReproducibleSum};
 use corpuscle_processes::Processes;
@@ -167,11 +167,10 @@ impl OpenSide {
     }
 }
 
-impl Dew {
+impl Inventory<'_> {
     /// The air outside open sides takes the velocity of the air before them, and where it has moved in there is more of it.
-    pub(crate) fn move_outside(&mut self) {
-        let mut sides = std::mem::take(&mut self.open_sides);
-        for open in &mut sides {
+    pub(crate) fn move_outside(&mut self, sides: &mut [OpenSide]) {
+        for open in sides {
             let (axis, side) = (open.axis, open.side);
             let rest = self.rest_density;
             let sound = self.air.sound_speed;
@@ -179,26 +178,25 @@ impl Dew {
                 let inward = [1.0, -1.0][side] * particle.velocity[axis];
                 sound * (particle.density / rest - 1.0) + 0.5 * inward.max(0.0).powi(2) / sound
             };
-            open.sample_velocities(&self.processes, &self.room, &self.state.air, self.scale.h(), rise);
+            open.sample_velocities(self.processes, self.room, &self.state.air, self.scale.h(), rise);
             for particle in &mut self.state.air {
                 if particle.role == Role::Outside(open.axis as u8, open.side as u8) {
                     particle.velocity = [0.0; 3];
-                    particle.velocity[open.axis] = open.velocity[open.column(&self.room, particle.position)];
+                    particle.velocity[open.axis] = open.velocity[open.column(self.room, particle.position)];
                     (particle.acceleration, particle.spreading) = ([0.0; 3], [0.0; 3]);
                 }
             }
             self.add_outside(open);
         }
-        self.open_sides = sides;
     }
 
     /// Adds ambient air at the far end of columns that have moved in.
     fn add_outside(&mut self, open: &OpenSide) {
-        let (deepest, apart) = (open.deepest(&self.scale), open.apart[open.axis]);
+        let (deepest, apart) = (open.deepest(self.scale), open.apart[open.axis]);
         for column in (0..open.velocity.len()).filter(|&column| open.free[column]) {
             let mut depth = open.outermost[column].max(-0.5 * apart) + apart;
             while depth <= deepest {
-                let place = open.place(&self.room, column, depth);
+                let place = open.place(self.room, column, depth);
                 let Self { settings, state, .. } = self;
                 let mut particle =
                     Particle::new(state.next_id, place, settings.ambient_temperature, settings.ambient_vapour);

@@ -1,6 +1,6 @@
 //! The passes of a step, each with what it works on.
 
-use super::shared::{
+use crate::shared::{
     BeforeColumn, BeforeOutlet, Body, Fan, IS_PASSED, MEASURING_GROUPS, MOST_FANS, Measured, Memory, OutsideColumn,
     Packed, PackedColumn, Parameters, Partial, Row, Shown, Solid, Status, Surface, Water,
 };
@@ -28,7 +28,7 @@ pub(super) const PIECES: &[(&str, &str)] = &[
 ];
 
 /// These pieces and the smoothing kernel.
-pub(super) fn pieces(kernel: &str) -> Vec<(&str, &str)> {
+pub(crate) fn pieces(kernel: &str) -> Vec<(&str, &str)> {
     PIECES.iter().copied().chain([(KERNEL_PIECE, kernel)]).collect()
 }
 

@@ -1,8 +1,8 @@
 //! The solids of a scene, made ready: where they are, what they are made of, and the particles that stand for them.
 
+use super::sources::{BodySources, Outside, Surroundings};
+use super::wall::WallLayer;
 use crate::humid_air::ZERO_CELSIUS;
-use crate::solids::sources::{BodySources, Outside, Surroundings};
-use crate::solids::wall::WallLayer;
 use corpuscle_model::{ModelError, SolidShape};
 use corpuscle_scene::dew::{self, Dew, Shape};
 use corpuscle_scene::{SceneError, Series, Table};

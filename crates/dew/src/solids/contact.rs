@@ -1,8 +1,8 @@
 //! Which air is within reach of which sites of solids.
 
+use super::{Searched, Site, distance_squared};
 use crate::air::{Arrangement, Scale};
 use crate::settings::WallTreatment;
-use crate::solids::{Searched, Site, distance_squared};
 use rayon::prelude::*;
 use std::ops::Range;
 

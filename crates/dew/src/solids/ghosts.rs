@@ -1,8 +1,8 @@
 //! Ghost samples: random, evenly spread, throughout a solid (Schechter & Bridson, Ghost SPH, 2012).
 
+use super::contact::Contact;
 use super::{Body, Searched, Site, Solids, distance_squared};
 use crate::air::Scale;
-use crate::contact::Contact;
 use crate::room::Room;
 use crate::settings::WallTreatment;
 use corpuscle_model::ModelError;

@@ -1,19 +1,20 @@
 //! Solids as particles that stay where they are: what they are made of, where their surface is, how they conduct heat.
 
+pub mod bodies;
 mod boundary;
 mod conduction;
+pub(crate) mod contact;
 mod ghosts;
 pub(crate) mod sources;
 #[cfg(feature = "gpu")]
 pub(crate) mod upload;
 pub(crate) mod wall;
 
-pub use boundary::THRESHOLD;
 pub use conduction::Conduction;
 pub(crate) use ghosts::ghost_contact;
 
 use crate::air::Scale;
-use crate::faces::BEYOND;
+use crate::constants::BEYOND;
 use crate::room::{Face, GhostParticle, Mirrors, Room};
 use crate::settings::{Conductor, WallTreatment};
 use corpuscle_model::ModelError;
