@@ -39,7 +39,7 @@ impl Layer {
     pub fn new(body: &Body, room: &Room, spacing: f64, contacts: [&Contact; 2]) -> Option<Self> {
         let surface = body.surface.clone()?;
         let width = LAYER_WIDTH * spacing;
-        let along = |axis: usize| body.positions.iter().map(move |place| place[axis]);
+        let along = |axis: usize| body.positions.iter().map(move |position| position[axis]);
         let reach = 2.0 * width + spacing;
         let low = [0, 1, 2].map(|axis| (along(axis).fold(f64::INFINITY, f64::min) - reach).max(room.low[axis]));
         let high = [0, 1, 2].map(|axis| (along(axis).fold(f64::NEG_INFINITY, f64::max) + reach).min(room.high[axis]));
@@ -51,21 +51,21 @@ impl Layer {
         });
         let counts = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) * SAMPLES_PER_SPACING / spacing).ceil().max(1.0));
         let apart = [0, 1, 2].map(|axis| (high[axis] - low[axis]) / counts[axis]);
-        let places = (0..counts.iter().product::<f64>() as u64).map(|number| {
+        let positions = (0..counts.iter().product::<f64>() as u64).map(|number| {
             let [x, y] = [counts[0] as u64, counts[1] as u64];
             let index = [number % x, number / x % y, number / (x * y)];
             [0, 1, 2].map(|axis| low[axis] + (index[axis] as f64 + 0.5) * apart[axis])
         });
         let volume: f64 = apart.iter().product();
-        layer.volumes = layer.count(places).1.map(|count| volume * f64::from(count));
+        layer.volumes = layer.count(positions).1.map(|count| volume * f64::from(count));
         Some(layer)
     }
 
-    /// Signed distance of the nearest place, and how many are in the layer and in that behind it.
-    fn count(&self, places: impl Iterator<Item = [f64; 3]>) -> (f64, [u32; 2]) {
+    /// Signed distance of the nearest position, and how many are in the layer and in that behind it.
+    fn count(&self, positions: impl Iterator<Item = [f64; 3]>) -> (f64, [u32; 2]) {
         let (mut nearest, mut counts) = (f64::INFINITY, [0; 2]);
-        for place in places {
-            let distance = (self.surface)(place);
+        for position in positions {
+            let distance = (self.surface)(position);
             nearest = nearest.min(distance);
             match distance / self.width {
                 part if !(0.0..2.0).contains(&part) => {}
@@ -75,8 +75,8 @@ impl Layer {
         (nearest, counts)
     }
 
-    fn is_near(&self, place: [f64; 3]) -> bool {
-        (0..3).all(|axis| (self.low[axis]..self.high[axis]).contains(&place[axis]))
+    fn is_near(&self, position: [f64; 3]) -> bool {
+        (0..3).all(|axis| (self.low[axis]..self.high[axis]).contains(&position[axis]))
     }
 
     /// What is found in the air as it stands, at these positions. Of the sites of both `contacts` this process counts those that it owns.
@@ -87,8 +87,8 @@ impl Layer {
         owns: impl Fn([f64; 3]) -> bool,
         processes: &Processes,
     ) -> Found {
-        let places = air.filter(|&place| self.is_near(place));
-        let (nearest, own) = self.count(places);
+        let positions = air.filter(|&position| self.is_near(position));
+        let (nearest, own) = self.count(positions);
         let pairs_of = |(sites, contact): (&Vec<usize>, &Contact)| {
             let own = sites.iter().filter(|&&site| owns(contact.sites[site].position));
             own.map(|&site| contact.of_site(site).len()).sum::<usize>()

@@ -316,7 +316,7 @@ fn particles(body: &bodies::Body, room: &Room) -> Body {
     let samples = &body.samples;
     let kept: Vec<usize> = (0..samples.positions.len()).filter(|&at| room.contains(samples.positions[at])).collect();
     let solid = body.solid.clone();
-    let surface: Surface = Arc::new(move |place| solid.signed_distance(place));
+    let surface: Surface = Arc::new(move |position| solid.signed_distance(position));
     Body {
         positions: kept.iter().map(|&at| samples.positions[at]).collect(),
         volumes: kept.iter().map(|&at| samples.volumes[at]).collect(),

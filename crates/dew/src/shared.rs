@@ -270,7 +270,7 @@ corpuscle_gpu::declare! {
         /// A particle of air; temperature, K, and vapour, part of the mass, are counted from the ambient air's.
         pub struct Particle {
             /// m.
-            pub place: [f32; 3],
+            pub position: [f32; 3],
             /// kg/m3.
             pub density: f32,
             /// m/s.
@@ -300,7 +300,7 @@ corpuscle_gpu::declare! {
         /// A particle as it lies in memory: devices read sixteen bytes at a time where they are uploaded so, and a [`Particle`] member by member.
         pub struct Packed {
             /// See [`Particle`].
-            pub place_and_density: [f32; 4],
+            pub position_and_density: [f32; 4],
             /// See [`Particle`].
             pub velocity_and_fog: [f32; 4],
             /// See [`Particle`].
@@ -316,7 +316,7 @@ corpuscle_gpu::declare! {
         /// Values of a particle that its neighbours read: a search reads only the first part of those out of reach.
         pub struct PackedColumn {
             /// m; pressure over the square of the density, Pa m6/kg2.
-            pub place_and_pressure: [f32; 4],
+            pub position_and_pressure: [f32; 4],
             /// m/s; K.
             pub velocity_and_temperature: [f32; 4],
             /// Diagonal of the tensor of normalisation; vapour, part of the mass.
@@ -370,7 +370,7 @@ corpuscle_gpu::declare! {
         /// A particle of a solid, its ghost particle, a ghost sample, or, with its pairs and capacity alone, a cell of a wall behind a solid.
         pub struct Site {
             /// m.
-            pub place: [f32; 3],
+            pub position: [f32; 3],
             /// Over that of a particle of air.
             pub volume: f32,
             /// Conductivity with which the air is warmed, W/(m K).
@@ -633,7 +633,7 @@ corpuscle_gpu::declare! {
         /// Particles in each cell.
         storage counts: [AtomicU32],
         /// The cell of each particle, and its number there.
-        storage places: [[u32; 2]],
+        storage cell_slots: [[u32; 2]],
         /// Numbers of particles, by which those of a cell are put in order.
         storage keys: [u32],
         /// The first particle of each cell.

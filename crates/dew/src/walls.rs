@@ -33,26 +33,26 @@ pub fn add_density(
     };
     contact.near.par_iter().map(of_one).collect_into_vec(&mut work.parts);
     for (near, part) in contact.near.iter().zip(&work.parts) {
-        sums[arrangement.place_of[near.particle as usize] as usize].filling += kappa * scale.to_density * part;
+        sums[arrangement.index_of[near.particle as usize] as usize].filling += kappa * scale.to_density * part;
     }
 }
 
 /// Solids join the moments of the Laplacian, by which diffusion is made exact.
 pub fn add_moments(contact: &Contact, arrangement: &Arrangement, scale: &Scale, sums: &mut [Sums], work: &mut Work) {
     let of_one = |near: &Near| {
-        let place = arrangement.at(arrangement.place_of[near.particle as usize] as usize);
+        let position = arrangement.at(arrangement.index_of[near.particle as usize] as usize);
         let mut moments = Moments::default();
         for pair in contact.of_air(near).iter().filter(|pair| pair.r > 0.0) {
             let number = pair.other as usize;
             let weight = contact.volumes[number] * scale.kernel.laplacian(pair.r) / (pair.r * pair.r);
-            let products = normalisation::products(contact.offset(number, place));
+            let products = normalisation::products(contact.offset(number, position));
             moments.iter_mut().zip(products).for_each(|(sum, product)| *sum += weight * product);
         }
         moments
     };
     contact.near.par_iter().map(of_one).collect_into_vec(&mut work.moments);
     for (near, moments) in contact.near.iter().zip(&work.moments) {
-        let sums = &mut sums[arrangement.place_of[near.particle as usize] as usize].moments;
+        let sums = &mut sums[arrangement.index_of[near.particle as usize] as usize].moments;
         sums.iter_mut().zip(moments).for_each(|(sum, part)| *sum += 0.5 / scale.moment * part);
     }
 }
@@ -117,7 +117,7 @@ impl Push<'_> {
     }
 
     fn column(&self, near: &Near) -> &Column {
-        &self.columns[self.arrangement.place_of[near.particle as usize] as usize]
+        &self.columns[self.arrangement.index_of[near.particle as usize] as usize]
     }
 
     /// Sum of `strength`, of distance and volume, along the way from each site near that keeps air out by `walls` to the air.

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 /// A particle of air of constant mass that moves with the flow.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Particle {
-    /// Place, m.
+    /// Position, m.
     pub position: [f64; 3],
     /// Velocity, m/s.
     pub velocity: [f64; 3],
     /// Acceleration, m/s2.
     pub acceleration: [f64; 3],
-    /// How its place is evened out among its neighbours: times the square of the time step it is a displacement, m/s2.
+    /// How its position is evened out among its neighbours: times the square of the time step it is a displacement, m/s2.
     pub spreading: [f64; 3],
     /// Temperature, K.
     pub temperature: f64,

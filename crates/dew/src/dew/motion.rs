@@ -221,8 +221,8 @@ fn set_densities(
     reach: f64,
     density_excess_beyond: &[[f64; 2]; 3],
 ) {
-    particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
-        particle.density = air.density * sums[place as usize].filling;
+    particles.par_iter_mut().zip(&arrangement.index_of).with_min_len(1024).for_each(|(particle, &index)| {
+        particle.density = air.density * sums[index as usize].filling;
         if matches!(particle.role, Role::Still | Role::Idle) {
             // Where it no longer matters, the air is as it is at rest.
             particle.density = rest_density;
@@ -259,13 +259,13 @@ fn fill_columns(
             (particle.velocity_ahead(ahead), particle.density, particle.temperature, particle.vapour)
         }
     };
-    let column = |(place, entry): (usize, &Entry)| {
+    let column = |(index, entry): (usize, &Entry)| {
         let (mut velocity, density, temperature, vapour) = seen(entry.particle as usize);
         for (along, mirrored) in velocity.iter_mut().zip(entry.mirrored) {
             *along = if mirrored { -*along } else { *along };
         }
         Column {
-            position: arrangement.at(place),
+            position: arrangement.at(index),
             velocity,
             pressure: air.sound_speed * air.sound_speed * (density - rest_density) / (density * density),
             temperature,

@@ -51,10 +51,10 @@ impl Free {
         Self { solids, surfaces, room: *room, nearest, clearance: CLEARANCE * scale.spacing }
     }
 
-    /// Whether air can start at a place.
-    pub(crate) fn holds(&self, place: [f64; 3]) -> bool {
-        let away = |(surface, mirrors): &(Surface, Mirrors)| surface(self.room.mirrored_back(place, mirrors));
-        self.solids.near(place, self.nearest).next().is_none()
+    /// Whether air can start at a position.
+    pub(crate) fn holds(&self, position: [f64; 3]) -> bool {
+        let away = |(surface, mirrors): &(Surface, Mirrors)| surface(self.room.mirrored_back(position, mirrors));
+        self.solids.near(position, self.nearest).next().is_none()
             && self.surfaces.iter().all(|surface| away(surface) > self.clearance)
     }
 }
@@ -71,21 +71,21 @@ impl Inventory<'_> {
             -more[0]..counts[axis] + more[1]
         });
         let free = Free::new(self.solids, self.room, self.scale, bodies.iter().map(|body| body.surface.clone()));
-        let is_free = |place: [f64; 3]| free.holds(place);
+        let is_free = |position: [f64; 3]| free.holds(position);
         let mut next_id = self.state.next_id;
         for z in range[2].clone() {
             for y in range[1].clone() {
                 for x in range[0].clone() {
                     let index = [x, y, z];
-                    let place = [0, 1, 2].map(|axis| self.room.low[axis] + (index[axis] as f64 + 0.5) * apart[axis]);
+                    let position = [0, 1, 2].map(|axis| self.room.low[axis] + (index[axis] as f64 + 0.5) * apart[axis]);
                     // By the position on the lattice, so that no process has to know what another leaves out.
                     let id = next_id;
                     next_id += 1;
-                    if !self.owns(place) || !self.room.is_filled(place) || !is_free(place) {
+                    if !self.owns(position) || !self.room.is_filled(position) || !is_free(position) {
                         continue;
                     }
-                    let [temperature, vapour] = start(place);
-                    let particle = Particle::new(id, place, temperature, vapour);
+                    let [temperature, vapour] = start(position);
+                    let particle = Particle::new(id, position, temperature, vapour);
                     self.state.air.push(placed(particle, self.room, slowest(self.air)));
                 }
             }

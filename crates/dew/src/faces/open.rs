@@ -64,7 +64,7 @@ impl OpenSide {
             outermost: vec![0.0; columns],
         };
         let last = new.deepest(scale);
-        new.free = (0..columns).map(|column| is_free(new.place(room, column, last))).collect();
+        new.free = (0..columns).map(|column| is_free(new.position(room, column, last))).collect();
         new
     }
 
@@ -79,24 +79,24 @@ impl OpenSide {
         &self.free
     }
 
-    /// The place in the midst of a column so far beyond the side, m.
-    fn place(&self, room: &Room, column: usize, depth: f64) -> [f64; 3] {
+    /// The position in the midst of a column so far beyond the side, m.
+    fn position(&self, room: &Room, column: usize, depth: f64) -> [f64; 3] {
         let index = [column % self.counts[0], column / self.counts[0]];
-        let mut place = [0.0; 3];
-        place[self.axis] = [room.low[self.axis] - depth, room.high[self.axis] + depth][self.side];
+        let mut position = [0.0; 3];
+        position[self.axis] = [room.low[self.axis] - depth, room.high[self.axis] + depth][self.side];
         for i in 0..2 {
             let other = self.along[i];
-            place[other] = room.low[other] + (index[i] as f64 + 0.5) * self.apart[other];
+            position[other] = room.low[other] + (index[i] as f64 + 0.5) * self.apart[other];
         }
-        place
+        position
     }
 
-    /// The column that a place is in.
-    fn column(&self, room: &Room, place: [f64; 3]) -> usize {
+    /// The column that a position is in.
+    fn column(&self, room: &Room, position: [f64; 3]) -> usize {
         let index = [0, 1].map(|i| {
             let other = self.along[i];
             // A negative number becomes 0.
-            (((place[other] - room.low[other]) / self.apart[other]) as usize).min(self.counts[i] - 1)
+            (((position[other] - room.low[other]) / self.apart[other]) as usize).min(self.counts[i] - 1)
         });
         index[0] + self.counts[0] * index[1]
     }
@@ -196,14 +196,14 @@ impl Inventory<'_> {
         for column in (0..open.velocity.len()).filter(|&column| open.free[column]) {
             let mut depth = open.outermost[column].max(-0.5 * apart) + apart;
             while depth <= deepest {
-                let place = open.place(self.room, column, depth);
+                let position = open.position(self.room, column, depth);
                 let Self { settings, state, .. } = self;
                 let mut particle =
-                    Particle::new(state.next_id, place, settings.ambient_temperature, settings.ambient_vapour);
+                    Particle::new(state.next_id, position, settings.ambient_temperature, settings.ambient_vapour);
                 particle.role = Role::Outside(open.axis as u8, open.side as u8);
                 particle.velocity[open.axis] = open.velocity[column];
                 state.next_id += 1;
-                if self.owns(place) {
+                if self.owns(position) {
                     self.state.air.push(particle);
                 }
                 depth += apart;

@@ -73,12 +73,12 @@ impl GpuSolids {
         }
         let mut sites = of_contact(inputs, origin, inputs.contact);
         sites.extend(inputs.ghosts.sites.iter().zip(&inputs.ghosts.volumes).map(|(site, volume)| shared::Site {
-            place: origin.relative(site.position),
+            position: origin.relative(site.position),
             volume: (volume / inputs.scale.volume) as f32,
             flags: shared::GHOST,
             ..shared::Site::default()
         }));
-        let cell = |site: &shared::Site| cell_at(parameters, site.place);
+        let cell = |site: &shared::Site| cell_at(parameters, site.position);
         sites.sort_by_key(cell);
         let cells = parameters.cells.iter().product::<u32>();
         let first = |wanted: u32| sites.partition_point(|site| cell(site) < wanted) as u32;
@@ -133,7 +133,7 @@ fn gpu_site(inputs: &SolidInputs, origin: Origin, site: &Site, volume: f64) -> s
     let mean = inputs.mean;
     let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
     shared::Site {
-        place: origin.relative(site.position),
+        position: origin.relative(site.position),
         volume: (volume / inputs.scale.volume) as f32,
         to_air: mean.conductivity(of_air, of_solid) as f32,
         to_solid: mean.conductivity(of_solid, of_air) as f32,
@@ -148,11 +148,11 @@ fn gpu_site(inputs: &SolidInputs, origin: Origin, site: &Site, volume: f64) -> s
     }
 }
 
-/// The cell of a place, as `dew_neighbours.wgsl` has it.
-fn cell_at(parameters: &Parameters, place: [f32; 3]) -> u32 {
+/// The cell of a position, as `dew_neighbours.wgsl` has it.
+fn cell_at(parameters: &Parameters, position: [f32; 3]) -> u32 {
     let Parameters { corner, per_cell, cells, .. } = parameters;
     let [x, y, z] = [0, 1, 2].map(|axis| {
-        let index = ((place[axis] - corner[axis]) * per_cell).max(0.0) as u32;
+        let index = ((position[axis] - corner[axis]) * per_cell).max(0.0) as u32;
         index.min(cells[axis] - 1)
     });
     (z * cells[1] + y) * cells[0] + x

@@ -80,8 +80,8 @@ impl Zone<'_> {
         if is_far && was_long { Utility::Gone } else { Utility::Low }
     }
 
-    fn distance(&self, place: [f64; 3]) -> f64 {
-        self.surfaces.iter().map(|surface| surface(place)).fold(f64::INFINITY, f64::min)
+    fn distance(&self, position: [f64; 3]) -> f64 {
+        self.surfaces.iter().map(|surface| surface(position)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a particle moves away from the nearest solid, now and with the velocity that the force gives it while sound crosses a

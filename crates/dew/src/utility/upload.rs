@@ -36,9 +36,9 @@ pub(crate) fn distance_field(
     parameters.low_after = low.after as f32;
     let distance = |number: usize| {
         let index = [number % nodes[0], number / nodes[0] % nodes[1], number / (nodes[0] * nodes[1])];
-        let place = [0, 1, 2].map(|axis| corner[axis] + index[axis] as f64 * apart);
+        let position = [0, 1, 2].map(|axis| corner[axis] + index[axis] as f64 * apart);
         // A number that arithmetic bears where there is no solid.
-        surfaces.iter().map(|surface| surface(place)).fold(1e6, f64::min) as f32
+        surfaces.iter().map(|surface| surface(position)).fold(1e6, f64::min) as f32
     };
     (0..nodes.iter().product()).into_par_iter().with_min_len(1024).map(distance).collect()
 }
