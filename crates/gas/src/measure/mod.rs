@@ -56,7 +56,7 @@ pub(crate) struct Measures {
     pub pairs: Pairs,
     /// Velocity along x over y, in a sheared box.
     pub flow: Option<Flow>,
-    /// Places of all balls, by number, when averages began.
+    /// Positions of all balls, by number, when averages began.
     pub starts: Vec<f64>,
     /// When that was.
     pub started: f64,
@@ -107,7 +107,7 @@ impl Measures {
     /// Restarts the averages, with histograms up to other speeds; samples over time stay.
     pub fn begin_anew<const D: usize>(&mut self, setup: &Setup<D>, largest: Vec<f64>) {
         let mut samples = std::mem::take(&mut self.samples);
-        // Counted from other places.
+        // Counted from other positions.
         samples.iter_mut().for_each(|sample| sample.displacement.clear());
         *self = Measures { samples, ..Self::new(setup, self.speeds.len(), largest) };
     }
@@ -133,9 +133,9 @@ impl Measures {
         // Along x a shear flow carries balls away.
         let first = usize::from(self.flow.is_some());
         for (number, start) in self.starts.chunks_exact(D).enumerate() {
-            let place = &snapshot.unwrapped[number];
+            let position = &snapshot.unwrapped[number];
             let set = snapshot.set[number] as usize;
-            sums[set] += (first..D).map(|axis| (place[axis] - start[axis]).powi(2)).sum::<f64>();
+            sums[set] += (first..D).map(|axis| (position[axis] - start[axis]).powi(2)).sum::<f64>();
             counts[set] += 1.0;
         }
         sums.iter().zip(counts).map(|(sum, count)| sum / count).collect()
