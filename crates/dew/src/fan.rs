@@ -67,9 +67,9 @@ impl Fan {
         self.rate
     }
 
-    /// What it adds to the acceleration of air at a place that moves at a velocity, m/s2. It holds no air up that is faster.
-    pub fn acceleration(&self, place: [f64; 3], velocity: [f64; 3]) -> [f64; 3] {
-        if (0..3).any(|axis| place[axis] < self.low[axis] || place[axis] >= self.high[axis]) {
+    /// What it adds to the acceleration of air at a position that moves at a velocity, m/s2. It holds no air up that is faster.
+    pub fn acceleration(&self, position: [f64; 3], velocity: [f64; 3]) -> [f64; 3] {
+        if (0..3).any(|axis| position[axis] < self.low[axis] || position[axis] >= self.high[axis]) {
             return [0.0; 3];
         }
         let along: f64 = (0..3).map(|axis| velocity[axis] * self.direction[axis]).sum();

@@ -8,8 +8,7 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod air;
-pub mod bodies;
-mod contact;
+mod constants;
 mod dew;
 mod domain;
 pub mod drops;
@@ -20,14 +19,20 @@ mod fogging;
 #[cfg(feature = "gpu")]
 mod gpu;
 pub mod humid_air;
+mod inventory;
 mod layer;
 mod measures;
 mod model;
 mod normalisation;
 mod open;
+#[cfg(feature = "gpu")]
+mod origin;
 mod room;
 mod settings;
+#[cfg(feature = "gpu")]
+mod shared;
 pub mod solids;
+mod state;
 #[cfg(test)]
 mod testing;
 mod utility;
@@ -39,3 +44,4 @@ pub use fan::Fan;
 pub use open::{open, open_on};
 pub use room::{Face, GhostParticle, Inflow, Room};
 pub use settings::{Condensation, Conductor, Humidity, LowUtility, Mean, Settings, WallTreatment};
+pub use solids::bodies;

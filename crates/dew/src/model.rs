@@ -1,9 +1,10 @@
 //! What the model shows.
 
 use crate::air::{Particle, order_of};
-use crate::dew::{Dew, State};
+use crate::dew::Dew;
 use crate::humid_air::HumidAir;
 use crate::measures::drop_sizes;
+use crate::state::State;
 use crate::wetting::{Wetting, WettingState};
 #[cfg(feature = "gpu")]
 use corpuscle_model::{AdvanceObserver, CpuOnly, GpuModel, advance_with};

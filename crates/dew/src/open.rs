@@ -1,7 +1,6 @@
 //! From a scene to a model.
 
-use crate::air::{Properties, TemperatureCoefficients};
-use crate::bodies;
+use crate::air::{LEAST_SOUND, Properties, SOUND_OVER_MOTION, TemperatureCoefficients};
 use crate::dew::{Dew, Setup};
 use crate::drops::{DropLaws, MOST_SITES, Retention, WATER_DENSITY, most_per_area, smallest_reach};
 use crate::fan::Fan;
@@ -10,7 +9,7 @@ use crate::layer::Layer;
 use crate::room::{Face, Inflow, Room};
 use crate::settings::{Condensation, Humidity, LowUtility, Mean, Settings, WallTreatment};
 use crate::solids::sources::HeatSources;
-use crate::solids::{Body, Surface};
+use crate::solids::{Body, Surface, bodies};
 use corpuscle_model::ModelError;
 use corpuscle_processes::Processes;
 use corpuscle_scene::Axis;
@@ -18,12 +17,6 @@ use corpuscle_scene::dew::{self as written, HumidityTransport, Scheme, Treatment
 use corpuscle_solids::Solid;
 use std::path::Path;
 use std::sync::Arc;
-
-/// The speed of sound over the fastest motion: the density then stays within a percent (Monaghan 1994).
-pub(crate) const SOUND_OVER_MOTION: f64 = 10.0;
-
-/// Least speed of sound, m/s: air at rest stays evenly spread.
-pub(crate) const LEAST_SOUND: f64 = 0.1;
 
 /// Makes the model of a scene; `seed` is that of everything random, relative paths are taken from `folder`.
 ///
@@ -56,7 +49,9 @@ pub fn open_on(processes: &Processes, scene: &written::Dew, seed: u64, folder: &
     if scene.air.velocity_m_per_s != [0.0; 3] {
         dew.stir(|_| scene.air.velocity_m_per_s);
     }
-    let layer = |body: &Body| body.walls.and_then(|_| Layer::new(body, &dew));
+    let layer = |body: &Body| {
+        body.walls.and_then(|_| Layer::new(body, &dew.room, dew.scale.spacing, [&dew.contact, &dew.ghosts]))
+    };
     dew.layers = setup.bodies.iter().map(layer).collect();
     dew.names = bodies.iter().map(|body| body.name.clone()).collect();
     dew.add_walls(&bodies);
@@ -97,8 +92,8 @@ fn refuse_what_cannot_be(scene: &written::Dew) -> Result<(), ModelError> {
     let refuse = |what: &str| Err(ModelError::Setup(what.into()));
     if humidity_transport(scene) == HumidityTransport::RelativeHumidity && scene.scheme == Scheme::Physical {
         return refuse(
-            "dew.transport.humidity = \"relative-humidity\" goes with the scheme \"paper\" only, where particles of air condense: give \
-             scheme = \"paper\", or \"mass-fraction\"",
+            "dew.transport.humidity = \"relative-humidity\" goes with the scheme \"particle-condensation\" only: give \
+             scheme = \"particle-condensation\", or \"mass-fraction\"",
         );
     }
     let is_any =
@@ -148,7 +143,7 @@ fn key_of_side(axis: usize, side: usize) -> String {
 fn humidity_transport(scene: &written::Dew) -> HumidityTransport {
     let of_scheme = match scene.scheme {
         Scheme::Physical => HumidityTransport::MassFraction,
-        Scheme::Paper => HumidityTransport::RelativeHumidity,
+        Scheme::ParticleCondensation => HumidityTransport::RelativeHumidity,
     };
     scene.transport.humidity.unwrap_or(of_scheme)
 }
@@ -247,21 +242,21 @@ fn walls(treatment: Treatment) -> WallTreatment {
 }
 
 fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
-    let paper = scene.scheme == Scheme::Paper;
-    let of_scheme = if paper { written::Mean::Arithmetic } else { written::Mean::Harmonic };
+    let by_particles = scene.scheme == Scheme::ParticleCondensation;
+    let of_scheme = if by_particles { written::Mean::Arithmetic } else { written::Mean::Harmonic };
     Settings {
         kernel: scene.kernel,
         walls: walls(scene.boundary.treatment),
         mean: match scene.transport.conductivity_mean.unwrap_or(of_scheme) {
             written::Mean::Harmonic => Mean::Harmonic,
-            written::Mean::Arithmetic if paper => Mean::Diffusivity,
+            written::Mean::Arithmetic if by_particles => Mean::Diffusivity,
             written::Mean::Arithmetic => Mean::Arithmetic,
         },
         humidity: match humidity_transport(scene) {
             HumidityTransport::MassFraction => Humidity::MassFraction,
             HumidityTransport::RelativeHumidity => Humidity::Relative,
         },
-        condensation: if paper { Condensation::Particle } else { Condensation::Diffusion },
+        condensation: if by_particles { Condensation::Particle } else { Condensation::Diffusion },
         gravity: if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] },
         low_utility: scene.low_utility.as_ref().map(|low| LowUtility { distance: low.distance, after: low.after_s }),
         time_factor: scene.time_factor,
@@ -275,7 +270,7 @@ fn properties(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bod
     let transport = &scene.transport;
     let sound = (SOUND_OVER_MOTION * fastest(scene, start, room, bodies)).max(LEAST_SOUND);
     let mut air = Properties::of(start, sound);
-    if scene.scheme == Scheme::Paper {
+    if scene.scheme == Scheme::ParticleCondensation {
         air.coefficients = TemperatureCoefficients::default();
     }
     // What the scene gives is the same at all temperatures.
@@ -321,7 +316,7 @@ fn particles(body: &bodies::Body, room: &Room) -> Body {
     let samples = &body.samples;
     let kept: Vec<usize> = (0..samples.positions.len()).filter(|&at| room.contains(samples.positions[at])).collect();
     let solid = body.solid.clone();
-    let surface: Surface = Arc::new(move |place| solid.signed_distance(place));
+    let surface: Surface = Arc::new(move |position| solid.signed_distance(position));
     Body {
         positions: kept.iter().map(|&at| samples.positions[at]).collect(),
         volumes: kept.iter().map(|&at| samples.volumes[at]).collect(),
@@ -375,7 +370,7 @@ fn laws_but_smallest(scene: &written::Dew) -> DropLaws {
     DropLaws {
         contact_angle: scene.drops.contact_angle_deg.to_radians(),
         retention: retention(scene),
-        viscosity: if scene.scheme == Scheme::Paper { 0.0 } else { scene.drops.viscosity_pa_s },
+        viscosity: if scene.scheme == Scheme::ParticleCondensation { 0.0 } else { scene.drops.viscosity_pa_s },
         pressure: scene.air.pressure_pa,
         surface_tension: scene.drops.surface_tension_n_per_m,
         gravity: scene.gravity_m_per_s2,
@@ -384,14 +379,14 @@ fn laws_but_smallest(scene: &written::Dew) -> DropLaws {
     }
 }
 
-/// Friction that holds a hemisphere of 2 mm on an upright pane.
-const PAPER_FRICTION: f64 = 1.3e-4;
+/// Friction of drops where none is given in scheme `particle-condensation`: it holds a hemisphere of 2 mm on an upright pane.
+const PATENTED_FRICTION: f64 = 1.3e-4;
 
 fn retention(scene: &written::Dew) -> Retention {
     let has_angles = scene.drops.receding_angle_deg.is_some() || scene.drops.advancing_angle_deg.is_some();
-    let of_paper = (scene.scheme == Scheme::Paper && !has_angles).then_some(PAPER_FRICTION);
+    let of_scheme = (scene.scheme == Scheme::ParticleCondensation && !has_angles).then_some(PATENTED_FRICTION);
     let [receding, advancing] = scene.drops.angles_deg().map(f64::to_radians);
-    scene.drops.friction.or(of_paper).map_or(Retention::Hysteresis { receding, advancing }, Retention::Friction)
+    scene.drops.friction.or(of_scheme).map_or(Retention::Hysteresis { receding, advancing }, Retention::Friction)
 }
 
 fn warnings(scene: &written::Dew, bodies: &[bodies::Body]) -> Vec<String> {
@@ -449,8 +444,8 @@ mod tests {
             advancing: advancing.to_radians(),
         };
         assert_eq!(held("physical", ""), by_angles(74.0, 106.0));
-        assert_eq!(held("paper", ""), Retention::Friction(PAPER_FRICTION));
-        for scheme in ["physical", "paper"] {
+        assert_eq!(held("particle-condensation", ""), Retention::Friction(PATENTED_FRICTION));
+        for scheme in ["physical", "particle-condensation"] {
             assert_eq!(held(scheme, "friction = 1e-4"), Retention::Friction(1e-4));
             assert_eq!(held(scheme, "receding_angle_deg = 80, advancing_angle_deg = 95"), by_angles(80.0, 95.0));
         }

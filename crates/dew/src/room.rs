@@ -46,7 +46,7 @@ pub struct Room {
     pub faces: [[Face; 2]; 3],
 }
 
-/// A ghost particle: what stands beyond faces for a particle in the room, or for a place there.
+/// A ghost particle: what stands beyond faces for a particle in the room, or for a position there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GhostParticle {
     /// Where it stands, m.
@@ -77,23 +77,23 @@ impl Room {
         [0, 1, 2].map(|axis| size[axis] / counts[axis] as f64)
     }
 
-    /// How far a place is beyond a face, m; negative before it.
-    pub fn depth_beyond(&self, place: [f64; 3], axis: usize, side: usize) -> f64 {
-        [self.low[axis] - place[axis], place[axis] - self.high[axis]][side]
+    /// How far a position is beyond a face, m; negative before it.
+    pub fn depth_beyond(&self, position: [f64; 3], axis: usize, side: usize) -> f64 {
+        [self.low[axis] - position[axis], position[axis] - self.high[axis]][side]
     }
 
-    /// Whether air stands at a place at the start: in the room, beyond a face that air passes, and beyond two or more faces only where
+    /// Whether air stands at a position at the start: in the room, beyond a face that air passes, and beyond two or more faces only where
     /// one of them is open.
-    pub fn is_filled(&self, place: [f64; 3]) -> bool {
-        let mut beyond = self.faces_before(place);
+    pub fn is_filled(&self, position: [f64; 3]) -> bool {
+        let mut beyond = self.faces_before(position);
         let faces = || beyond.clone().map(|(axis, side)| &self.faces[axis][side]);
         faces().all(Face::is_passed) && (faces().any(|face| *face == Face::Open) || beyond.nth(1).is_none())
     }
 
-    /// A place that is beyond faces for which `mirrors` has a reach, mirrored back.
-    pub(crate) fn mirrored_back(&self, place: [f64; 3], mirrors: &Mirrors) -> [f64; 3] {
+    /// A position that is beyond faces for which `mirrors` has a reach, mirrored back.
+    pub(crate) fn mirrored_back(&self, position: [f64; 3], mirrors: &Mirrors) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
-            let (at, low, high) = (place[axis], self.low[axis], self.high[axis]);
+            let (at, low, high) = (position[axis], self.low[axis], self.high[axis]);
             let [below, above] = mirrors[axis].map(|reach| reach.is_some());
             if at < low && below {
                 2.0 * low - at
@@ -105,42 +105,43 @@ impl Room {
         })
     }
 
-    /// The faces that a place is beyond: axis and side.
-    fn faces_before(&self, place: [f64; 3]) -> impl Iterator<Item = (usize, usize)> + Clone {
+    /// The faces that a position is beyond: axis and side.
+    fn faces_before(&self, position: [f64; 3]) -> impl Iterator<Item = (usize, usize)> + Clone {
         let (low, high) = (self.low, self.high);
         (0..3)
             .flat_map(|axis| [(axis, 0), (axis, 1)])
-            .filter(move |&(axis, side)| [place[axis] < low[axis], place[axis] >= high[axis]][side])
+            .filter(move |&(axis, side)| [position[axis] < low[axis], position[axis] >= high[axis]][side])
     }
 
-    /// Whether a place is inside.
-    pub fn contains(&self, place: [f64; 3]) -> bool {
-        (0..3).all(|axis| self.low[axis] <= place[axis] && place[axis] < self.high[axis])
+    /// Whether a position is inside.
+    pub fn contains(&self, position: [f64; 3]) -> bool {
+        (0..3).all(|axis| self.low[axis] <= position[axis] && position[axis] < self.high[axis])
     }
 
-    /// Calls `found` with every ghost particle of a place that is within `reach` of the room, beyond periodic faces and walls.
-    pub fn ghost_particles(&self, place: [f64; 3], reach: f64, found: impl FnMut(GhostParticle)) {
-        self.ghost_particles_beyond(place, &[[None; 2]; 3], reach, found);
+    /// Calls `found` with every ghost particle of a position that is within `reach` of the room, beyond periodic faces and walls.
+    pub fn ghost_particles(&self, position: [f64; 3], reach: f64, found: impl FnMut(GhostParticle)) {
+        self.ghost_particles_beyond(position, &[[None; 2]; 3], reach, found);
     }
 
     /// The same, and mirror images within a reach of their own beyond those of the other faces, by axis and end, for which `mirrors` has one.
     pub fn ghost_particles_beyond(
         &self,
-        place: [f64; 3],
+        position: [f64; 3],
         mirrors: &Mirrors,
         reach: f64,
         mut found: impl FnMut(GhostParticle),
     ) {
         let farthest = mirrors.iter().flatten().flatten().copied().fold(reach, f64::max);
-        let near = |axis: usize| place[axis] - self.low[axis] < farthest || self.high[axis] - place[axis] < farthest;
+        let near =
+            |axis: usize| position[axis] - self.low[axis] < farthest || self.high[axis] - position[axis] < farthest;
         if !(0..3).any(near) {
             return;
         }
-        // Along each axis the place itself comes first, then its ghost particles.
+        // Along each axis the position itself comes first, then its ghost particles.
         let mut along = [[(0.0, false, false); 3]; 3];
         let mut count = [1; 3];
         for axis in 0..3 {
-            let (low, high, at) = (self.low[axis], self.high[axis], place[axis]);
+            let (low, high, at) = (self.low[axis], self.high[axis], position[axis]);
             along[axis][0] = (at, false, false);
             for side in 0..2 {
                 let mirrored = |beyond: bool| (2.0 * [low, high][side] - at, true, beyond);
@@ -173,20 +174,20 @@ impl Room {
     }
 
     /// Brings back what has crossed periodic faces and walls.
-    pub fn keep(&self, place: &mut [f64; 3], velocity: &mut [f64; 3]) {
+    pub fn keep(&self, position: &mut [f64; 3], velocity: &mut [f64; 3]) {
         for axis in 0..3 {
             let (low, high) = (self.low[axis], self.high[axis]);
-            let side = usize::from(place[axis] >= high);
-            if place[axis] >= low && side == 0 {
+            let side = usize::from(position[axis] >= high);
+            if position[axis] >= low && side == 0 {
                 continue;
             }
             match self.faces[axis][side] {
                 Face::Periodic => {
-                    let shifted = low + (place[axis] - low).rem_euclid(high - low);
-                    place[axis] = if shifted < high { shifted } else { low };
+                    let shifted = low + (position[axis] - low).rem_euclid(high - low);
+                    position[axis] = if shifted < high { shifted } else { low };
                 }
                 Face::Wall => {
-                    place[axis] = self.mirrored_inside(place[axis], axis, side);
+                    position[axis] = self.mirrored_inside(position[axis], axis, side);
                     velocity[axis] = -velocity[axis];
                 }
                 Face::Inlet(_) | Face::Outlet | Face::Open => {}
@@ -195,13 +196,13 @@ impl Room {
     }
 
     /// Brings back air of the room that was pushed out by an inlet: there it moves as what comes in.
-    pub fn hold_at_inlets(&self, place: &mut [f64; 3], velocity: &mut [f64; 3]) {
+    pub fn hold_at_inlets(&self, position: &mut [f64; 3], velocity: &mut [f64; 3]) {
         for axis in 0..3 {
             for side in 0..2 {
                 if let Face::Inlet(inflow) = self.faces[axis][side]
-                    && [place[axis] < self.low[axis], place[axis] >= self.high[axis]][side]
+                    && [position[axis] < self.low[axis], position[axis] >= self.high[axis]][side]
                 {
-                    place[axis] = self.mirrored_inside(place[axis], axis, side);
+                    position[axis] = self.mirrored_inside(position[axis], axis, side);
                     velocity[axis] = inflow.velocity[axis];
                 }
             }
@@ -215,36 +216,36 @@ impl Room {
     }
 
     /// Moves a particle that crossed the rim of a face to the opposite rim: air before an inlet is the same everywhere.
-    pub fn wrap_along(&self, face: usize, place: &mut [f64; 3]) {
+    pub fn wrap_along(&self, face: usize, position: &mut [f64; 3]) {
         for axis in (0..3).filter(|&axis| axis != face) {
             let (low, high) = (self.low[axis], self.high[axis]);
-            if place[axis] < low || place[axis] >= high {
-                let shifted = low + (place[axis] - low).rem_euclid(high - low);
-                place[axis] = if shifted < high { shifted } else { low };
+            if position[axis] < low || position[axis] >= high {
+                let shifted = low + (position[axis] - low).rem_euclid(high - low);
+                position[axis] = if shifted < high { shifted } else { low };
             }
         }
     }
 
-    /// The first outlet to which a place in the room is nearer than `reach`: axis and side.
-    pub fn outlet_near(&self, place: [f64; 3], reach: f64) -> Option<(usize, usize)> {
+    /// The first outlet to which a position in the room is nearer than `reach`: axis and side.
+    pub fn outlet_near(&self, position: [f64; 3], reach: f64) -> Option<(usize, usize)> {
         (0..3).find_map(|axis| {
-            let to = [place[axis] - self.low[axis], self.high[axis] - place[axis]];
+            let to = [position[axis] - self.low[axis], self.high[axis] - position[axis]];
             let side = (0..2).find(|&side| to[side] < reach && self.faces[axis][side] == Face::Outlet)?;
             Some((axis, side))
         })
     }
 
-    /// Whether a place is beyond two faces or more, one of them open.
-    pub fn is_beyond_edge(&self, place: [f64; 3]) -> bool {
-        let mut beyond = self.faces_before(place);
+    /// Whether a position is beyond two faces or more, one of them open.
+    pub fn is_beyond_edge(&self, position: [f64; 3]) -> bool {
+        let mut beyond = self.faces_before(position);
         beyond.clone().any(|(axis, side)| self.faces[axis][side] == Face::Open) && beyond.nth(1).is_some()
     }
 
-    /// The face that air passes beyond which a place lies, an open one before others: axis and side.
-    pub fn beyond(&self, place: [f64; 3]) -> Option<(usize, usize)> {
+    /// The face that air passes beyond which a position lies, an open one before others: axis and side.
+    pub fn beyond(&self, position: [f64; 3]) -> Option<(usize, usize)> {
         let passed = |&(axis, side): &(usize, usize)| self.faces[axis][side].is_passed();
         let open = |&(axis, side): &(usize, usize)| self.faces[axis][side] == Face::Open;
-        let mut beyond = self.faces_before(place).filter(passed);
+        let mut beyond = self.faces_before(position).filter(passed);
         beyond.clone().find(open).or_else(|| beyond.next())
     }
 }
@@ -277,9 +278,9 @@ mod tests {
     #[test]
     fn what_leaves_comes_back() {
         let mixed = room([[Face::Periodic; 2], [Face::Wall; 2], [Face::Outlet; 2]]);
-        let (mut place, mut velocity) = ([-0.25, 2.5, 3.5], [1.0; 3]);
-        mixed.keep(&mut place, &mut velocity);
-        assert_eq!((place, velocity), ([0.75, 1.5, 3.5], [1.0, -1.0, 1.0]));
-        assert_eq!(mixed.beyond(place), Some((2, 1)));
+        let (mut position, mut velocity) = ([-0.25, 2.5, 3.5], [1.0; 3]);
+        mixed.keep(&mut position, &mut velocity);
+        assert_eq!((position, velocity), ([0.75, 1.5, 3.5], [1.0, -1.0, 1.0]));
+        assert_eq!(mixed.beyond(position), Some((2, 1)));
     }
 }

@@ -82,6 +82,9 @@ pub struct LowUtility {
     pub after: f64,
 }
 
+/// Colour gradient of a boundary of solids over the spacing, at least; on a plane it is about 0.5.
+pub(crate) const BOUNDARY_THRESHOLD: f64 = 0.15;
+
 /// What can be chosen of how the model works.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
@@ -138,7 +141,7 @@ impl Settings {
             time_factor: 1.0,
             low_utility: None,
             cfl: 0.25,
-            threshold: crate::solids::THRESHOLD,
+            threshold: BOUNDARY_THRESHOLD,
             kappa: 1.0,
         }
     }

@@ -1,9 +1,10 @@
 //! What solids do to the motion of the air.
 
 use crate::air::{Arrangement, Column, Properties, Rates, Scale, Sums};
-use crate::contact::{Contact, Near, Pair};
+use crate::constants::{RANGE, STRENGTH};
 use crate::normalisation::{self, Moments};
 use crate::settings::WallTreatment;
+use crate::solids::contact::{Contact, Near, Pair};
 use corpuscle_sph::kernel::SmoothingKernel;
 use rayon::prelude::*;
 
@@ -32,26 +33,26 @@ pub fn add_density(
     };
     contact.near.par_iter().map(of_one).collect_into_vec(&mut work.parts);
     for (near, part) in contact.near.iter().zip(&work.parts) {
-        sums[arrangement.place_of[near.particle as usize] as usize].filling += kappa * scale.to_density * part;
+        sums[arrangement.index_of[near.particle as usize] as usize].filling += kappa * scale.to_density * part;
     }
 }
 
 /// Solids join the moments of the Laplacian, by which diffusion is made exact.
 pub fn add_moments(contact: &Contact, arrangement: &Arrangement, scale: &Scale, sums: &mut [Sums], work: &mut Work) {
     let of_one = |near: &Near| {
-        let place = arrangement.at(arrangement.place_of[near.particle as usize] as usize);
+        let position = arrangement.at(arrangement.index_of[near.particle as usize] as usize);
         let mut moments = Moments::default();
         for pair in contact.of_air(near).iter().filter(|pair| pair.r > 0.0) {
             let number = pair.other as usize;
             let weight = contact.volumes[number] * scale.kernel.laplacian(pair.r) / (pair.r * pair.r);
-            let products = normalisation::products(contact.offset(number, place));
+            let products = normalisation::products(contact.offset(number, position));
             moments.iter_mut().zip(products).for_each(|(sum, product)| *sum += weight * product);
         }
         moments
     };
     contact.near.par_iter().map(of_one).collect_into_vec(&mut work.moments);
     for (near, moments) in contact.near.iter().zip(&work.moments) {
-        let sums = &mut sums[arrangement.place_of[near.particle as usize] as usize].moments;
+        let sums = &mut sums[arrangement.index_of[near.particle as usize] as usize].moments;
         sums.iter_mut().zip(moments).for_each(|(sum, part)| *sum += 0.5 / scale.moment * part);
     }
 }
@@ -73,13 +74,6 @@ pub struct Push<'a> {
     /// The constant kappa of the density.
     pub kappa: f64,
 }
-
-/// Repulsion at the distance at which it begins, over the square of the speed of sound and the spacing's inverse
-/// (Monaghan 1994 takes the square of the fastest speed, a hundredth of that; the strong force is to hold at any speed).
-pub(crate) const STRENGTH: f64 = 0.3;
-
-/// Distance from a solid's particle at which repulsion begins, over the spacing.
-pub(crate) const RANGE: f64 = 1.5;
 
 /// Distance, over the spacing, at which the repulsion is so weak that air at rest stays slow.
 pub const CALM: f64 = 1.3;
@@ -123,7 +117,7 @@ impl Push<'_> {
     }
 
     fn column(&self, near: &Near) -> &Column {
-        &self.columns[self.arrangement.place_of[near.particle as usize] as usize]
+        &self.columns[self.arrangement.index_of[near.particle as usize] as usize]
     }
 
     /// Sum of `strength`, of distance and volume, along the way from each site near that keeps air out by `walls` to the air.

@@ -3,15 +3,12 @@
 //! The air gives water to boundary particles and takes it from them; every few steps the drops take that over: what came
 //! condenses into them, what went evaporates from them, they move, and each boundary particle has what then lies on it.
 
-use crate::bodies;
-use crate::dew::Dew;
-use crate::drops::{DropLaws, DropState, Drops, Patch, Portion, Share, Surfaces, Unseen};
+use crate::drops::{DropState, Drops, Patch, Portion, Share, Unseen};
 use crate::fogging::{Cover, Fogging, Story, SurfaceFace, open_area};
-use crate::solids::SolidParticle;
+use crate::solids::{SolidParticle, bodies};
 use corpuscle_model::{Column, CompensatedSum, ParticleSet, Surface, Values};
 use corpuscle_solids::Solid;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// Steps between two transfers of condensed water to drops: they hardly grow in one, and finding them costs.
 const DROP_UPDATE_STEPS: u64 = 10;
@@ -58,7 +55,8 @@ impl WettingState {
 }
 
 impl Wetting {
-    fn new(drops: Drops, particles: Vec<u32>) -> Self {
+    /// Drops, and the boundary particle of each of their patches.
+    pub fn new(drops: Drops, particles: Vec<u32>) -> Self {
         let solids = drops.solids().len();
         let mut wetting = Self {
             fogging: Fogging::new(particles.len(), solids),
@@ -99,6 +97,11 @@ impl Wetting {
     #[cfg(feature = "gpu")]
     pub fn steps_since(&self, step: u64) -> u64 {
         step - self.step
+    }
+
+    /// Notes the step in which drops move.
+    pub fn set_step(&mut self, step: u64) {
+        self.step = step;
     }
 
     /// Whether a transfer is due in a step, with `air` particles of air.
@@ -150,7 +153,7 @@ impl Wetting {
 
     /// Transfers what condensed on and evaporated from the boundary particles to the drops, which move up to `time`. Returns the water
     /// that left the solids as drops, kg.
-    fn transfer_to_drops(&mut self, water_on: &mut [f64], time: f64) -> f64 {
+    pub fn transfer_to_drops(&mut self, water_on: &mut [f64], time: f64) -> f64 {
         let patches = || self.particles.iter().zip(&self.shares);
         let gained: Vec<f64> = patches().map(|(&particle, share)| water_on[particle as usize] - share.water).collect();
         self.drops.evaporate(&self.portions, &self.shares, &gained);
@@ -169,7 +172,7 @@ impl Wetting {
     }
 
     /// Sets each boundary particle's part of the evaporation of a wet surface: the drops' resistance is in series with that of air half a `spacing` thick, m.
-    fn set_evaporation(&self, spacing: f64, evaporation: &mut [f64]) {
+    pub fn set_evaporation(&self, spacing: f64, evaporation: &mut [f64]) {
         let of_air = 2.0 / spacing;
         for (patch, (&particle, share)) in self.particles.iter().zip(&self.shares).enumerate() {
             let of_drops = self.drops.evaporation_on(patch, share);
@@ -308,56 +311,16 @@ fn area_in_cell(normal: [f64; 3], spacing: f64) -> f64 {
     spacing * spacing / normal.iter().fold(0.0_f64, |most, along| most.max(along.abs()))
 }
 
-impl Dew {
-    /// From here on water on the solids forms drops. `solids` are the bodies, in order.
-    pub(crate) fn lay_drops(&mut self, laws: DropLaws, solids: Arc<[Solid]>, sites_per_area: Vec<f64>, seed: u64) {
-        let (mut particles, mut patches) = (Vec::new(), Vec::new());
-        for (number, particle) in self.solids.particles.iter().enumerate() {
-            let Some(normal) = particle.normal.filter(|_| particle.area > 0.0) else { continue };
-            particles.push(number as u32);
-            patches.push(self.patch_of(particle, normal, &solids[particle.body as usize]));
-        }
-        let surfaces = Surfaces { solids, sites_per_area, patches, room: [self.room.low, self.room.high] };
-        self.wetting = Some(Wetting::new(Drops::new(laws, surfaces, seed), particles));
-        self.set_evaporation();
-    }
-
-    /// The surface at a boundary particle with an outward normal.
-    fn patch_of(&self, particle: &SolidParticle, normal: [f64; 3], solid: &Solid) -> Patch {
-        // The surface is searched from outside: next to a side of the box where the solid goes on, the nearest is the cut.
-        let outside = [0, 1, 2].map(|axis| particle.position[axis] + self.scale.spacing * normal[axis]);
-        let nearest = solid.nearest(outside);
-        let foot = |axis: usize| outside[axis] - nearest.distance * nearest.normal[axis];
-        Patch {
-            solid: particle.body,
-            position: [0, 1, 2].map(foot),
-            normal: nearest.normal,
-            half_width: 0.5 * area_in_cell(solid.own_direction(nearest.normal), self.scale.spacing).sqrt(),
-        }
-    }
-
-    /// Transfers what condensed or was laid on the solids to the drops, which move up to now.
-    pub fn transfer_water_to_drops(&mut self) {
-        let Some(wetting) = self.wetting.as_mut() else { return };
-        let left = wetting.transfer_to_drops(&mut self.state.water_on, self.state.time);
-        if self.processes.is_first() {
-            self.state.water.book(-left);
-        }
-        self.set_evaporation();
-    }
-
-    /// Transfers condensed water to the drops, where that is due for `air` particles of air.
-    pub(crate) fn update_drops(&mut self, air: usize) {
-        let step = self.state.steps;
-        let Some(wetting) = self.wetting.as_mut().filter(|wetting| wetting.is_due(step, air)) else { return };
-        wetting.step = step;
-        self.transfer_water_to_drops();
-    }
-
-    /// Sets the evaporation that the drops allow at the solids' particles.
-    pub(crate) fn set_evaporation(&mut self) {
-        if let Some(wetting) = &self.wetting {
-            wetting.set_evaporation(self.scale.spacing, &mut self.evaporation);
-        }
+/// The surface of a solid at one of its boundary particles, a `spacing` apart, m, with an outward normal.
+pub(crate) fn patch_of(particle: &SolidParticle, normal: [f64; 3], solid: &Solid, spacing: f64) -> Patch {
+    // The surface is searched from outside: next to a side of the box where the solid goes on, the nearest is the cut.
+    let outside = [0, 1, 2].map(|axis| particle.position[axis] + spacing * normal[axis]);
+    let nearest = solid.nearest(outside);
+    let foot = |axis: usize| outside[axis] - nearest.distance * nearest.normal[axis];
+    Patch {
+        solid: particle.body,
+        position: [0, 1, 2].map(foot),
+        normal: nearest.normal,
+        half_width: 0.5 * area_in_cell(solid.own_direction(nearest.normal), spacing).sqrt(),
     }
 }

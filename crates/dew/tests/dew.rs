@@ -86,10 +86,10 @@ fn momentum_is_conserved_in_stirred_air() {
 }
 
 fn nearest_pair(dew: &Dew, size: [f64; 3]) -> f64 {
-    let places: Vec<[f64; 3]> = dew.air().iter().map(|particle| particle.position).collect();
+    let positions: Vec<[f64; 3]> = dew.air().iter().map(|particle| particle.position).collect();
     let mut nearest = f64::INFINITY;
-    for (i, a) in places.iter().enumerate() {
-        for b in &places[..i] {
+    for (i, a) in positions.iter().enumerate() {
+        for b in &positions[..i] {
             let squared = (0..3).map(|axis| {
                 let along = (a[axis] - b[axis]).abs();
                 along.min(size[axis] - along).powi(2)

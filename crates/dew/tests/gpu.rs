@@ -33,8 +33,8 @@ fn room(faces: [[Face; 2]; 3]) -> Setup {
     }
 }
 
-fn part(setup: &Setup, place: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| (place[axis] - setup.room.low[axis]) / SIZE[axis])
+fn part(setup: &Setup, position: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| (position[axis] - setup.room.low[axis]) / SIZE[axis])
 }
 
 /// Air that turns in the room, warmer and moister here than there.
@@ -44,13 +44,13 @@ fn stirred(setup: &Setup) -> Dew {
 
 /// The same with every second particle or so faster along x by `nudge`, m/s.
 fn nudged(setup: &Setup, nudge: f64) -> Dew {
-    let start = |place| {
-        let [x, y, z] = part(setup, place).map(|part| (TAU * part).sin());
+    let start = |position| {
+        let [x, y, z] = part(setup, position).map(|part| (TAU * part).sin());
         [WARM + 3.0 * x * y + z, vapour(WARM, 0.7 + 0.2 * y * z)]
     };
     let mut dew = Dew::new(setup, start).unwrap();
-    dew.stir(|place| {
-        let [x, y, z] = part(setup, place).map(|part| TAU * part);
+    dew.stir(|position| {
+        let [x, y, z] = part(setup, position).map(|part| TAU * part);
         [0.05 * z.sin() + nudge * (1e5 * z).sin().signum().max(0.0), 0.03 * (x + z).sin(), 0.04 * x.sin() * y.cos()]
     });
     dew
@@ -73,7 +73,7 @@ fn largest(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).abs()).fold(0.0, f64::max)
 }
 
-/// Largest differences over all particles: place over the spacing; velocity, m/s; acceleration, m/s2; temperature, K; vapour and fog, parts
+/// Largest differences over all particles: position over the spacing; velocity, m/s; acceleration, m/s2; temperature, K; vapour and fog, parts
 /// of the mass; density, kg/m3.
 fn differences(a: &Dew, b: &Dew) -> [f64; 7] {
     let (a, b) = (by_id(a), by_id(b));
@@ -155,8 +155,8 @@ fn ball(faces: [[Face; 2]; 3], held: bool) -> Setup {
 fn ball_on_floor(faces: [[Face; 2]; 3]) -> Setup {
     let mut setup = ball(faces, false);
     let low = setup.room.low;
-    let place = [low[0] + 0.5 * SIZE[0], low[1] + 0.5 * SIZE[1], low[2] + D];
-    let floor = Solid::of_shape(Shape::cuboid([SIZE[0], SIZE[1], 2.0 * D]).unwrap(), Pose::new(place, [0.0; 3]));
+    let position = [low[0] + 0.5 * SIZE[0], low[1] + 0.5 * SIZE[1], low[2] + D];
+    let floor = Solid::of_shape(Shape::cuboid([SIZE[0], SIZE[1], 2.0 * D]).unwrap(), Pose::new(position, [0.0; 3]));
     let oak = Material { conductivity: 0.17, heat_capacity: 2000.0, density: 545.0 };
     setup.bodies.push(Body::sampled(floor, D, oak, WARM - 10.0, true).unwrap());
     setup
@@ -213,8 +213,8 @@ fn published_ways_go_as_on_the_cpu() {
 fn fog_and_what_it_lays_go_as_on_the_cpu() {
     let Some(gpu) = require_gpu("fog on the GPU") else { return };
     let setup = ball(all_faces()[2].1, false);
-    let start = |place| {
-        let [x, _, z] = part(&setup, place).map(|part| (TAU * part).sin());
+    let start = |position| {
+        let [x, _, z] = part(&setup, position).map(|part| (TAU * part).sin());
         [WARM + x, vapour(WARM, 1.0 + 0.1 * z)]
     };
     let open = || Dew::new(&setup, start).unwrap();
@@ -393,7 +393,7 @@ fn air_leaves_by_edges_as_on_the_cpu() {
     let setup = room(open_sides()[1].1);
     let open = || {
         let mut dew = stirred(&setup);
-        dew.stir(|place| [1.01, 1.0, 0.0].map(|along| along * (0.08 + 0.06 * part(&setup, place)[2])));
+        dew.stir(|position| [1.01, 1.0, 0.0].map(|along| along * (0.08 + 0.06 * part(&setup, position)[2])));
         dew
     };
     let mut host = open();
@@ -415,10 +415,10 @@ fn with_low_utility(mut setup: Setup) -> Setup {
 fn floor(faces: [[Face; 2]; 3]) -> Setup {
     let mut setup = room(faces);
     let low = setup.room.low;
-    let place = [low[0] + 0.5 * SIZE[0], low[1] + 0.5 * SIZE[1], low[2] + D];
-    let solid = Solid::of_shape(Shape::cuboid([SIZE[0], SIZE[1], 2.0 * D]).unwrap(), Pose::new(place, [0.0; 3]));
+    let position = [low[0] + 0.5 * SIZE[0], low[1] + 0.5 * SIZE[1], low[2] + D];
+    let solid = Solid::of_shape(Shape::cuboid([SIZE[0], SIZE[1], 2.0 * D]).unwrap(), Pose::new(position, [0.0; 3]));
     let mut body = Body::sampled(solid, D, GLASS, COLD, true).unwrap();
-    body.surface = Some(Arc::new(move |place: [f64; 3]| place[2] - low[2] - 2.0 * D));
+    body.surface = Some(Arc::new(move |position: [f64; 3]| position[2] - low[2] - 2.0 * D));
     setup.bodies.push(body);
     setup
 }
@@ -597,7 +597,9 @@ fn air_that_cannot_go_on_breaks_down_with_an_error() {
     let Some(gpu) = require_gpu("a breakdown on the GPU") else { return };
     let setup = ball([[Face::Wall; 2]; 3], false);
     let mut dew = Dew::new(&setup, |_| [WARM, vapour(WARM, 0.8)]).unwrap();
-    dew.stir(|place| if place[0] > setup.room.low[0] + 0.5 * SIZE[0] { [1e20, 0.0, 0.0] } else { [-1e20, 0.0, 0.0] });
+    dew.stir(
+        |position| if position[0] > setup.room.low[0] + 0.5 * SIZE[0] { [1e20, 0.0, 0.0] } else { [-1e20, 0.0, 0.0] },
+    );
     let mut dew = on_gpu(dew, &gpu);
     let error = dew.advance_to(1.0, &AtomicBool::new(false)).unwrap_err();
     assert!(matches!(error, ModelError::Breakdown { .. }), "{error}");
@@ -612,7 +614,8 @@ fn built_in(name: &str) -> Dew {
 /// Drops as frames show them: number, mass, the largest, and where they are on average.
 fn drops(dew: &Dew) -> [f64; 6] {
     let set = dew.frame().sets.into_iter().find(|set| set.name == "drops").unwrap();
-    let mean = |axis: usize| set.position.iter().map(|place| place[axis]).sum::<f64>() / set.position.len() as f64;
+    let mean =
+        |axis: usize| set.position.iter().map(|position| position[axis]).sum::<f64>() / set.position.len() as f64;
     let largest = set.mass.iter().copied().fold(0.0, f64::max);
     [set.id.len() as f64, set.mass.iter().sum(), largest, mean(0), mean(1), mean(2)]
 }

@@ -21,7 +21,7 @@ fn compare(seen: &DeviceParticles, frame: &Frame, gpu: &Gpu) {
     for (index, particle) in device.iter().enumerate() {
         let near = |one: f32, other: f64, bound: f64| (f64::from(one) - other).abs() < bound;
         let same = u64::from(particle.id) == air.id[index]
-            && (0..3).all(|k| near(particle.place[k], air.position[index][k] - seen.origin[k], 1e-6))
+            && (0..3).all(|k| near(particle.position[k], air.position[index][k] - seen.origin[k], 1e-6))
             && (0..3).all(|k| near(particle.velocity[k], air.velocity[index][k], 1e-5))
             && near(particle.temperature, temperatures[index] - ZERO_CELSIUS, 1e-4)
             && near(particle.spacing, 2.0 * air.radius[index], 1e-8);

@@ -124,7 +124,7 @@ fn air_comes_in_as_it_is_changed_live() {
 fn a_fan_drives_as_it_is_changed_live() {
     // The fastest downwards where the fan is.
     let downwards = |dew: &Dew| {
-        let within = |place: [f64; 3]| place[0] > 0.0075 && (0.006..0.012).contains(&place[2]);
+        let within = |position: [f64; 3]| position[0] > 0.0075 && (0.006..0.012).contains(&position[2]);
         let here = dew.air().iter().filter(|air| within(air.position));
         here.map(|air| -air.velocity[2]).fold(f64::NEG_INFINITY, f64::max)
     };

@@ -177,7 +177,7 @@ fn what_this_version_cannot_do_is_refused_by_its_key() {
 
 #[test]
 fn the_published_scheme_condenses_too_and_hardly_loses_water() {
-    let mut dew = dew(&PANE.replace("[dew.faces]", "scheme = \"paper\"\n[dew.faces]"));
+    let mut dew = dew(&PANE.replace("[dew.faces]", "scheme = \"particle-condensation\"\n[dew.faces]"));
     advance(&mut dew, 0.1);
     assert!(gauge(&dew, "water.on_solids_kg") > 0.0);
     // Relative humidity is what is conserved: the water of the ledger is off by the bend of the mass fraction over it.

@@ -140,7 +140,7 @@ fn air_that_speeds_up_towards_an_outlet_leaves_at_the_ambient_pressure() {
     assert!((0.0..1.2 * most).contains(&denser), "denser by {denser}, at most {most}");
 }
 
-/// What evens out the places of air in the room must not go on for ever once it has left: beyond the outlet it goes as its velocity says along the side.
+/// What evens out the positions of air in the room must not go on for ever once it has left: beyond the outlet it goes as its velocity says along the side.
 #[test]
 fn air_that_has_left_does_not_drift_aside() {
     let inflow = Inflow { velocity: [0.1, 0.0, 0.0], temperature: WARM, vapour: 0.0 };
@@ -167,7 +167,7 @@ fn air_that_has_left_does_not_drift_aside() {
     assert!(seen > 36, "{seen} particles were looked at");
 }
 
-/// What evens out the places of air pushes some of it back to the inlet that it came by, most where a solid stands before it: none of it goes out there.
+/// What evens out the positions of air pushes some of it back to the inlet that it came by, most where a solid stands before it: none of it goes out there.
 #[test]
 fn as_much_comes_in_as_an_inlet_says() {
     let (size, speed) = ([20.0 * D, 6.0 * D, 12.0 * D], 0.1);

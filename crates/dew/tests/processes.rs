@@ -67,7 +67,7 @@ run.until_s = 1
 [dew]
 size_m = [0.018, 0.016, 0.020]
 spacing_m = 0.002
-scheme = "paper"
+scheme = "particle-condensation"
 time_factor = 2
 air = { temperature_c = 25, relative_humidity = 0.8 }
 drops = { smallest_radius_m = 1e-4, sites_per_m2 = 1e6 }

@@ -60,7 +60,7 @@ fn compare(flood: &SphSweFlood, gpu: &Gpu, in_air: bool) {
     for (particle, &index) in device.iter().zip(&order) {
         assert_eq!(u64::from(particle.id), set.id[index]);
         let axes = 0..3;
-        let same = axes.clone().all(|axis| near(particle.place[axis], set.position[index][axis] - origin[axis]))
+        let same = axes.clone().all(|axis| near(particle.position[axis], set.position[index][axis] - origin[axis]))
             && axes.clone().all(|axis| near(particle.velocity[axis], set.velocity[index][axis]))
             && near(particle.spacing, 2.0 * set.radius[index])
             && near(particle.depth, depths[index])

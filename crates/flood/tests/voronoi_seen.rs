@@ -48,7 +48,7 @@ fn compare(flood: &VoronoiFlood, gpu: &Gpu) {
         // At the depth from which water is shown rounding decides.
         let Some(particle) = device.next_if(|particle| particle.id == set.id[index] as u32) else { continue };
         let axes = 0..3;
-        let same = axes.clone().all(|axis| near(particle.place[axis], set.position[index][axis] - origin[axis]))
+        let same = axes.clone().all(|axis| near(particle.position[axis], set.position[index][axis] - origin[axis]))
             && axes.clone().all(|axis| near(particle.velocity[axis], set.velocity[index][axis]))
             && near(particle.spacing, 2.0 * set.radius[index])
             && near(particle.depth, depths[index])

@@ -1,4 +1,4 @@
-//! Finding balls that overlap, in boxes by place.
+//! Finding balls that overlap, in boxes by position.
 
 use crate::functions::pow;
 
@@ -62,12 +62,12 @@ impl<const D: usize> Hash<D> {
         (0..D).rev().fold(0, |number, axis| number * self.count[axis] + cell[axis])
     }
 
-    /// Numbers of places, those in one cell together and in the cells' order: so that what is read in a row is near in memory.
-    pub fn in_order(&self, places: impl Iterator<Item = [f64; D]>) -> Vec<usize> {
+    /// Numbers of positions, those in one cell together and in the cells' order: so that what is read in a row is near in memory.
+    pub fn in_order(&self, positions: impl Iterator<Item = [f64; D]>) -> Vec<usize> {
         let mut order: Vec<(usize, usize)> =
-            places.enumerate().map(|(place, position)| (self.number(self.cell(&position)), place)).collect();
+            positions.enumerate().map(|(index, position)| (self.number(self.cell(&position)), index)).collect();
         order.sort_unstable();
-        order.into_iter().map(|(_, place)| place).collect()
+        order.into_iter().map(|(_, index)| index).collect()
     }
 
     /// Files a ball.
@@ -78,7 +78,7 @@ impl<const D: usize> Hash<D> {
         self.balls.push((position, radius));
     }
 
-    /// A filed ball that one at this place would overlap, and how far; of several the deepest.
+    /// A filed ball that one at this position would overlap, and how far; of several the deepest.
     pub fn overlap(&self, position: &[f64; D], radius: f64) -> Option<(usize, f64)> {
         let mut deepest: Option<(usize, f64)> = None;
         self.near(position, |ball, distance| {
@@ -109,7 +109,7 @@ impl<const D: usize> Hash<D> {
         }
     }
 
-    /// Numbers of the cells around a place, its own among them.
+    /// Numbers of the cells around a position, its own among them.
     fn cells_around(&self, position: &[f64; D]) -> impl Iterator<Item = usize> {
         let centre = self.cell(position);
         let around = (0..3_usize.pow(D as u32)).filter_map(move |around| {
@@ -128,12 +128,12 @@ impl<const D: usize> Hash<D> {
         row == 0 || row > self.count[1]
     }
 
-    /// Numbers of all cells of the rows across the faces of a sheared box, for a place in a cell there.
+    /// Numbers of all cells of the rows across the faces of a sheared box, for a position in a cell there.
     fn rows_across(&self, centre: [usize; D]) -> Vec<usize> {
         let mut cells = Vec::new();
         for step in [0, 2].into_iter().filter(|&step| self.slid != 0.0 && self.is_across(&centre, step)) {
             for around in 0..3_usize.pow(D as u32 - 2) {
-                // Along x from the place itself; along z as in a box at rest.
+                // Along x from the position itself; along z as in a box at rest.
                 let mut steps = [1; D];
                 (steps[1], steps[D - 1]) = (step, if D == 3 { around } else { step });
                 let Some(mut cell) = self.neighbour(&centre, &steps) else { continue };
@@ -181,7 +181,7 @@ impl<const D: usize> Hash<D> {
                 apart -= above * self.slid;
                 apart -= self.period[0] * (apart / self.period[0]).round();
             } else if self.period[axis] > 0.0 {
-                // Places lie in the box: no more than one period is too much.
+                // Positions lie in the box: no more than one period is too much.
                 if apart > 0.5 * self.period[axis] {
                     apart -= self.period[axis];
                 } else if apart < -0.5 * self.period[axis] {

@@ -15,6 +15,7 @@ mod hash;
 mod measure;
 mod memory;
 mod method;
+mod pause;
 mod random;
 mod scene;
 mod setup;

@@ -10,8 +10,8 @@ crate::declare! {
     structs {
         /// A particle as the device has it.
         pub struct DeviceParticle {
-            /// Place from [`DeviceParticles::origin`], m.
-            pub place: [f32; 3],
+            /// Position from [`DeviceParticles::origin`], m.
+            pub position: [f32; 3],
             /// Distance to its neighbours, m.
             pub spacing: f32,
             /// Velocity, m/s.
@@ -62,7 +62,7 @@ pub struct DeviceParticles {
     pub buffer: wgpu::Buffer,
     /// Particles that there is room for.
     pub room: usize,
-    /// The place that places are counted from, m.
+    /// The point that positions are counted from, m.
     pub origin: [f64; 3],
     /// How far apart they are on the whole, m: what is made for them is made for this.
     pub spacing: f64,

@@ -98,7 +98,7 @@ pub fn check_shader(text: &str) -> Result<(), String> {
 /// Whether WGSL lays the structures of a declaration out as Rust does.
 ///
 /// # Errors
-/// The first member whose place or size differs.
+/// The first member whose offset or size differs.
 pub fn check_layouts(declaration: &Declaration) -> Result<(), String> {
     check_layouts_in(&declaration.types(), &declaration.structs)
 }
@@ -106,7 +106,7 @@ pub fn check_layouts(declaration: &Declaration) -> Result<(), String> {
 /// The same for structures that a WGSL text declares.
 ///
 /// # Errors
-/// The first member whose name, place or size differs.
+/// The first member whose name, offset or size differs.
 pub fn check_layouts_in(text: &str, layouts: &[Layout]) -> Result<(), String> {
     let (module, _) = validated(text)?;
     let mut sizes = Layouter::default();

@@ -65,7 +65,7 @@ mod included {
         /// A corner.
         pub struct Corner {
             /// Where.
-            pub place: [f32; 3],
+            pub position: [f32; 3],
             /// How large.
             pub radius: f32,
             /// Which.
@@ -220,7 +220,7 @@ fn a_vertex_buffer_is_laid_out_as_the_structure() {
     let layout = included::Corner::layout();
     assert!(layout.wgsl_of_vertex().contains("    @location(1) radius: f32,\n"), "{}", layout.wgsl_of_vertex());
     let found: Vec<_> = layout.members[..3].iter().map(|member| (member.name, member.offset as u64)).collect();
-    assert_eq!(found, [("place", 0), ("radius", 12), ("number", 16)]);
+    assert_eq!(found, [("position", 0), ("radius", 12), ("number", 16)]);
     let vertex = Layout { members: layout.members[..3].to_vec(), ..layout };
     let attributes = vertex.vertex_attributes();
     let told: Vec<_> = attributes.iter().map(|a| (a.format, a.offset, a.shader_location)).collect();

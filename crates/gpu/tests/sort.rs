@@ -10,18 +10,18 @@ fn sorted(gpu: &Gpu, cell_of: &[u32], cells: usize) -> (Vec<u32>, Vec<u32>) {
     let groups = storage::<[u32; 3]>(gpu, "groups", 4).unwrap();
     let sort = CellSort::new(gpu, count, cells, &sizes, &keys).unwrap();
     let mut counts = vec![0_u32; cells];
-    let places = cell_of.iter().map(|&cell| {
+    let slots = cell_of.iter().map(|&cell| {
         counts[cell as usize] += 1;
         [cell, counts[cell as usize] - 1]
     });
-    let places: Vec<[u32; 2]> = places.collect();
+    let slots: Vec<[u32; 2]> = slots.collect();
     let threads = |of: usize| [of.div_ceil(THREADS as usize) as u32, 1, 1];
     let write = |buffer: &wgpu::Buffer, bytes: &[u8]| gpu.queue.write_buffer(buffer, 0, bytes);
     write(&sizes, bytemuck::bytes_of(&[count as u32, cells as u32]));
     write(&keys, bytemuck::cast_slice(&(0..count as u32).rev().collect::<Vec<_>>()));
     write(&groups, bytemuck::bytes_of(&[threads(count), threads(cells), [sort_blocks(cells) as u32, 1, 1], [1, 1, 1]]));
     write(&sort.counts, bytemuck::cast_slice(&counts));
-    write(&sort.places, bytemuck::cast_slice(&places));
+    write(&sort.cell_slots, bytemuck::cast_slice(&slots));
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut pass = Pass::begin(&mut encoder, None);
     sort.sort(&mut pass, &groups, SortSlots::FIRST);

@@ -158,7 +158,7 @@ fn splats_from_the_device_look_as_sprites_do() {
             .map(|index| {
                 let [x, y] = [(index % 80) as f32, (index / 80) as f32];
                 DeviceParticle {
-                    place: [x - 40.0, y - 25.0, 0.05 * x + 1.0 + 0.2 * (0.4 * x).sin()],
+                    position: [x - 40.0, y - 25.0, 0.05 * x + 1.0 + 0.2 * (0.4 * x).sin()],
                     spacing: 1.0,
                     depth: 1.0,
                     volume: 1.0,

@@ -1,6 +1,6 @@
 //! What earlier versions called otherwise, or had.
 //!
-//! Scheme `paper` of a flood is `sph-swe`, and its table `[flood.paper]` is `[flood.sph_swe]`; what is written out has the new names. Scheme `balanced` is
+//! Scheme `paper` of dew is `particle-condensation`, that of a flood is `sph-swe`, and its table `[flood.paper]` is `[flood.sph_swe]`; what is written out has the new names. Scheme `balanced` is
 //! gone, and with it `[flood.refinement]`: both are refused. A note says what was read by an old name. Scenes that a run wrote out held `[flood.balanced]` and `flood.rain.film_m` in every
 //! scheme; where another scheme is written these are ignored, as they had no effect there.
 
@@ -12,6 +12,8 @@ use toml::de::{DeTable, DeValue};
 const TABLE: [&str; 2] = ["sph_swe", "paper"];
 /// The scheme, and what it was called.
 const SCHEME: [&str; 2] = ["sph-swe", "paper"];
+/// The scheme of dew as patented, and what it was called.
+const DEW_SCHEME: [&str; 2] = ["particle-condensation", "paper"];
 
 /// Scheme `balanced`, and its tables.
 const GONE: &str = "balanced";
@@ -25,22 +27,18 @@ fn note(old: &str, new: &str) -> String {
     format!("{old} is an old name, which is still read: write {new}")
 }
 
-/// Gives the table and the scheme in a document their present names, and takes out what does nothing. Returns what had an old name.
+/// Gives the table and the schemes in a document their present names, and takes out what does nothing. Returns what had an old name.
 ///
 /// # Errors
 /// The path of a table that is there by both names, or of what is gone, and what to do.
 pub(crate) fn rename(root: &mut Spanned<DeValue<'_>>) -> Result<Vec<Renamed>, (String, String)> {
     let mut renamed = Vec::new();
     let DeValue::Table(root) = root.get_mut() else { return Ok(renamed) };
-    let Some((_, flood)) = root.iter_mut().find(|(key, _)| key.get_ref() == "flood") else { return Ok(renamed) };
-    let DeValue::Table(flood) = flood.get_mut() else { return Ok(renamed) };
-    if let Some(scheme) = flood.get_mut("scheme")
-        && scheme.get_ref().as_str() == Some(SCHEME[1])
-    {
-        let [new, old] = SCHEME.map(|name| format!("flood.scheme = \"{name}\""));
-        renamed.push((scheme.span(), note(&old, &new)));
-        *scheme.get_mut() = DeValue::String(SCHEME[0].into());
+    if let Some(dew) = table_of(root, "dew") {
+        renamed.extend(rename_scheme(dew, "dew", DEW_SCHEME));
     }
+    let Some(flood) = table_of(root, "flood") else { return Ok(renamed) };
+    renamed.extend(rename_scheme(flood, "flood", SCHEME));
     take_out(flood)?;
     if flood.contains_key(TABLE[1]) && flood.contains_key(TABLE[0]) {
         let what = format!(": this is an old name of flood.{}, which is there too; take out one of them", TABLE[0]);
@@ -52,6 +50,23 @@ pub(crate) fn rename(root: &mut Spanned<DeValue<'_>>) -> Result<Vec<Renamed>, (S
         flood.insert(key, table);
     }
     Ok(renamed)
+}
+
+/// A model's table.
+fn table_of<'a, 'b>(root: &'a mut DeTable<'b>, model: &str) -> Option<&'a mut DeTable<'b>> {
+    match root.get_mut(model)?.get_mut() {
+        DeValue::Table(table) => Some(table),
+        _ => None,
+    }
+}
+
+/// Gives a scheme in the table of a model its present name.
+fn rename_scheme(table: &mut DeTable<'_>, model: &str, names: [&'static str; 2]) -> Option<Renamed> {
+    let scheme = table.get_mut("scheme").filter(|scheme| scheme.get_ref().as_str() == Some(names[1]))?;
+    let [new, old] = names.map(|name| format!("{model}.scheme = \"{name}\""));
+    let renamed = (scheme.span(), note(&old, &new));
+    *scheme.get_mut() = DeValue::String(names[0].into());
+    Some(renamed)
 }
 
 fn note_of_table() -> String {

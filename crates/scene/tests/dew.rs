@@ -101,9 +101,10 @@ fn every_form_reads_and_round_trips_with_its_defaults() {
 }
 
 #[test]
-fn scheme_paper_fills_in_what_was_patented() {
-    let mut scene =
-        parse(&GOOD.replace("\"physical\"", "\"paper\"").replace("transport = { latent_heat = false }\n", ""));
+fn scheme_particle_condensation_fills_in_what_was_patented() {
+    let mut scene = parse(
+        &GOOD.replace("\"physical\"", "\"particle-condensation\"").replace("transport = { latent_heat = false }\n", ""),
+    );
     scene.resolve_defaults();
     let transport = &scene.dew().unwrap().transport;
     assert_eq!(transport.conductivity_mean, Some(Mean::Arithmetic));

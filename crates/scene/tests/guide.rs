@@ -326,7 +326,7 @@ fn full_dew() -> Scene {
     let dew = Dew {
         size_m: [1.0; 3],
         spacing_m: 1.0,
-        scheme: dew::Scheme::Paper,
+        scheme: dew::Scheme::ParticleCondensation,
         kernel: KernelName::WendlandC2,
         gravity_m_per_s2: [0.0; 3],
         buoyancy: true,

@@ -202,6 +202,26 @@ fn old_names_are_read_and_the_new_ones_written() {
     assert!(message.contains("flood.paper") && message.contains("old name of flood.sph_swe"), "{message}");
 }
 
+/// Scheme `particle-condensation` of dew was called `paper`.
+#[test]
+fn the_old_name_of_a_scheme_of_dew_is_read_and_the_new_one_written() {
+    let text = builtin("dew/pane").unwrap().text;
+    let read = |scheme: &str| {
+        let overrides = [("dew.scheme".to_owned(), scheme.to_owned())];
+        Scene::parse(text, "test.toml", &overrides).unwrap()
+    };
+    let (old, new) = (read("paper"), read("particle-condensation"));
+    assert_eq!(old, new);
+    assert!(old.to_toml().unwrap().contains("scheme = \"particle-condensation\""));
+    assert_eq!(
+        old.notes,
+        [
+            "--set dew.scheme=paper: dew.scheme = \"paper\" is an old name, which is still read: write dew.scheme = \"particle-condensation\""
+        ]
+    );
+    assert!(new.notes.is_empty());
+}
+
 proptest! {
     #[test]
     fn any_text_is_read_or_refused(text in "\\PC{0,200}", value in "\\PC{0,20}", path in "[a-z0-9.]{0,20}") {

@@ -1,4 +1,4 @@
-//! Solids: where they are, how far a place is from their surface, and particles that stand for them.
+//! Solids: where they are, how far a point is from their surface, and particles that stand for them.
 //!
 //! A [`Solid`] is a [`Shape`] or a [`Mesh`] at a [`Pose`]. [`Solid::nearest`] gives the signed distance to its surface and
 //! the direction away from it, [`Solid::sample`] fills it with particles. Lengths are in metres. [`MATERIALS`] has the heat

@@ -1,6 +1,6 @@
-//! What is known of a place beside a surface.
+//! What is known of a point beside a surface.
 
-/// How far a place is from the surface of a solid, and the way out.
+/// How far a point is from the surface of a solid, and the way out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
     /// Distance to the nearest point of the surface, m; negative inside.

@@ -2,7 +2,7 @@
 
 use parry3d_f64::math::{Pose as Rigid, Rotation, Vector};
 
-/// A place and a turn: a solid is first turned about its own origin, then moved.
+/// A position and a turn: a solid is first turned about its own origin, then moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose(Rigid);
 

@@ -4,11 +4,11 @@ use crate::SolidError;
 use crate::shape::length_and_direction;
 use std::f64::consts::PI;
 
-/// A closed profile in the half plane of distance from the axis and place along it, m; turned about the axis it bounds a
+/// A closed profile in the half plane of distance from the axis and position along it, m; turned about the axis it bounds a
 /// solid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// Corners `[distance, place]`, in turn so that the solid is on the left of its edges; the last is joined to the first.
+    /// Corners `[distance, position]`, in turn so that the solid is on the left of its edges; the last is joined to the first.
     corners: Vec<[f64; 2]>,
     /// Boxes round runs of edges.
     runs: Vec<Run>,
@@ -43,7 +43,7 @@ impl Run {
 }
 
 impl Profile {
-    /// A profile of corners `[distance from the axis, place along it]`, in turn, in either sense.
+    /// A profile of corners `[distance from the axis, position along it]`, in turn, in either sense.
     ///
     /// # Errors
     /// [`SolidError::Profile`] for fewer than three corners, one that is not finite or beyond the axis, edges that cross
@@ -104,7 +104,7 @@ impl Profile {
         crossed.count() % 2 == 1
     }
 
-    /// Smallest and largest place along the axis.
+    /// Smallest and largest position along the axis.
     pub(crate) fn range(&self) -> [f64; 2] {
         self.corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], c| [low.min(c[1]), high.max(c[1])])
     }

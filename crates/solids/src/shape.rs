@@ -138,7 +138,7 @@ fn nearest_of_box<const D: usize>(point: [f64; D], half: [f64; D]) -> (f64, [f64
     (beyond[nearest], with_signs(direction))
 }
 
-/// The nearest point of a solid of revolution, from that of its half plane (distance from the axis, place along it).
+/// The nearest point of a solid of revolution, from that of its half plane (distance from the axis, position along it).
 fn turned(point: [f64; 3], in_half_plane: impl Fn(f64, f64) -> (f64, [f64; 2])) -> Nearest {
     let (around, direction) = length_and_direction([point[0], point[1]]);
     let (distance, [out, along]) = in_half_plane(around, point[2]);

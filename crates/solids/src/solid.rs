@@ -26,7 +26,7 @@ impl Solid {
         Self { body: Body::Mesh(mesh), pose }
     }
 
-    /// Signed distance of a place to the surface and the way out.
+    /// Signed distance of a position to the surface and the way out.
     pub fn nearest(&self, point: [f64; 3]) -> Nearest {
         let nearest = self.nearest_of_its_own(self.pose.unplace(point));
         Nearest { normal: self.pose.turn(nearest.normal), ..nearest }

@@ -353,14 +353,14 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn distances_are_those_of_brute_force(place in [-1.2..1.2, -1.2..1.2, -1.2..1.2]) {
+    fn distances_are_those_of_brute_force(point in [-1.2..1.2, -1.2..1.2, -1.2..1.2]) {
         for soup in [ball(1.0, 1), torus(0.7, 0.3, 12, 8), cube([0.9, 0.5, 0.7])] {
             let mesh = mesh(&soup);
-            let nearest = mesh.nearest(place);
-            let (distance, is_inside) = (soup.distance(place), soup.winding(place) > 0.5);
+            let nearest = mesh.nearest(point);
+            let (distance, is_inside) = (soup.distance(point), soup.winding(point) > 0.5);
             prop_assert!((nearest.distance.abs() - distance).abs() < 1e-9);
             prop_assert!(distance < 1e-9 || (nearest.distance < 0.0) == is_inside, "{nearest:?} {is_inside}");
-            let foot = std::array::from_fn(|axis| place[axis] - nearest.distance * nearest.normal[axis]);
+            let foot = std::array::from_fn(|axis| point[axis] - nearest.distance * nearest.normal[axis]);
             prop_assert!(soup.distance(foot) < 1e-9);
         }
     }

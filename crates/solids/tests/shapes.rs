@@ -112,7 +112,7 @@ fn what_cannot_be_is_refused() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// A place moved by its distance against the way out lies on the surface, and no place of the surface is nearer.
+    /// A position moved by its distance against the way out lies on the surface, and no position of the surface is nearer.
     #[test]
     fn distances_are_those_to_the_nearest_point(x in -0.9..0.9, y in -0.9..0.9, z in -0.7..1.3) {
         for shape in shapes() {
@@ -151,18 +151,18 @@ proptest! {
         prop_assert!(samples.positions.iter().all(|&at| solid.signed_distance(at) < 0.0));
     }
 
-    /// The sign of the distance agrees with counting: the part of random places that are inside is the volume.
+    /// The sign of the distance agrees with counting: the part of random points that are inside is the volume.
     #[test]
-    fn the_volume_is_where_the_distance_is_negative(places in prop::collection::vec([0.0..1.0, 0.0..1.0, 0.0..1.0], 4000)) {
+    fn the_volume_is_where_the_distance_is_negative(points in prop::collection::vec([0.0..1.0, 0.0..1.0, 0.0..1.0], 4000)) {
         for shape in shapes() {
             let [low, high] = shape.bounds();
-            let inside = |place: &&[f64; 3]| {
-                let point = std::array::from_fn(|axis| low[axis] + (high[axis] - low[axis]) * place[axis]);
+            let inside = |point: &&[f64; 3]| {
+                let point = std::array::from_fn(|axis| low[axis] + (high[axis] - low[axis]) * point[axis]);
                 shape.nearest(point).distance < 0.0
             };
-            let found = places.iter().filter(inside).count() as f64 / places.len() as f64;
+            let found = points.iter().filter(inside).count() as f64 / points.len() as f64;
             let part = shape.volume() / (0..3).map(|axis| high[axis] - low[axis]).product::<f64>();
-            let error = (part * (1.0 - part) / places.len() as f64).sqrt();
+            let error = (part * (1.0 - part) / points.len() as f64).sqrt();
             prop_assert!((found - part).abs() <= 5.0 * error, "{shape:?}");
         }
     }

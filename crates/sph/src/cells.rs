@@ -54,22 +54,22 @@ impl<const D: usize> Cells<D> {
         std::array::from_fn(|axis| if axis == 0 { reach / COLUMNS_IN_REACH } else { reach })
     }
 
-    /// Sorts places into cells of about `size`, m (larger where there would be too many), and returns the order: entry k is the particle that
+    /// Sorts positions into cells of about `size`, m (larger where there would be too many), and returns the order: entry k is the particle that
     /// comes k-th. Stable: particles of one cell keep their order.
-    pub fn sort(&mut self, places: [&[f64]; D], size: [f64; D]) -> &[u32] {
-        self.lay_over(places, size);
-        self.sort_into_cells(places)
+    pub fn sort(&mut self, positions: [&[f64]; D], size: [f64; D]) -> &[u32] {
+        self.lay_over(positions, size);
+        self.sort_into_cells(positions)
     }
 
     /// The same with cells of just `size`, m, counted from `low`, m. Cells are made for `part`, m, only, by its lowest and highest corner; its outermost cells hold
     /// what lies beyond.
-    pub fn sort_part(&mut self, places: [&[f64]; D], size: [f64; D], low: [f64; D], part: [[f64; D]; 2]) -> &[u32] {
+    pub fn sort_part(&mut self, positions: [&[f64]; D], size: [f64; D], low: [f64; D], part: [[f64; D]; 2]) -> &[u32] {
         (self.low, self.size, self.per_size) = (low, size, size.map(|size| 1.0 / size));
         let number = |axis: usize, end: usize| ((part[end][axis] - low[axis]) * self.per_size[axis]).floor();
         self.first = std::array::from_fn(|axis| number(axis, 0));
         // A negative number becomes 0.
         self.count = std::array::from_fn(|axis| (number(axis, 1) - self.first[axis]) as usize + 1);
-        self.sort_into_cells(places)
+        self.sort_into_cells(positions)
     }
 
     /// Sorts the particles of each cell by a key, those with the same key as they were, and returns the order.
@@ -80,24 +80,24 @@ impl<const D: usize> Cells<D> {
         &self.order
     }
 
-    fn sort_into_cells(&mut self, places: [&[f64]; D]) -> &[u32] {
+    fn sort_into_cells(&mut self, positions: [&[f64]; D]) -> &[u32] {
         let mut cell = std::mem::take(&mut self.cell);
         let cell_of = |particle: usize| {
-            let along = |axis: usize| self.along(axis, places[axis][particle]);
+            let along = |axis: usize| self.along(axis, positions[axis][particle]);
             (0..D).rev().fold(0, |cell, axis| cell * self.count[axis] + along(axis)) as u32
         };
-        (0..places[0].len()).into_par_iter().with_min_len(FEWEST).map(cell_of).collect_into_vec(&mut cell);
+        (0..positions[0].len()).into_par_iter().with_min_len(FEWEST).map(cell_of).collect_into_vec(&mut cell);
         self.cell = cell;
         let cells = self.count.iter().product();
         counting::sort(&self.cell, cells, &mut self.start, &mut self.order);
         &self.order
     }
 
-    fn lay_over(&mut self, places: [&[f64]; D], mut size: [f64; D]) {
-        let ranges = places.map(range);
+    fn lay_over(&mut self, positions: [&[f64]; D], mut size: [f64; D]) {
+        let ranges = positions.map(range);
         let extent = ranges.map(|(low, high)| high - low);
         // Four a particle in the plane, 16 in space, and as many as 65,536 and 262,144 at any rate.
-        let most = (4_usize.pow(D as u32 - 1) * places[0].len()).max(4_usize.pow(D as u32 + 6)) as f64;
+        let most = (4_usize.pow(D as u32 - 1) * positions[0].len()).max(4_usize.pow(D as u32 + 6)) as f64;
         let cells = |size: [f64; D]| (0..D).map(|axis| (extent[axis] / size[axis]).floor() + 1.0).product::<f64>();
         while cells(size) > most {
             size = size.map(|size| 1.5 * size);
@@ -115,33 +115,33 @@ impl<const D: usize> Cells<D> {
         (((value - self.low[axis]) * self.per_size[axis] - self.first[axis]) as u32 as usize).min(self.count[axis] - 1)
     }
 
-    /// Ranges of the sorted order that cover all particles within `reach` of a place along each axis, one a row of cells.
+    /// Ranges of the sorted order that cover all particles within `reach` of a position along each axis, one a row of cells.
     #[inline(always)]
-    pub fn ranges(&self, place: [f64; D], reach: f64) -> impl Iterator<Item = Range<usize>> + '_ {
-        self.rows_round(place, reach).map(move |row| self.along_row(row, place[0], reach))
+    pub fn ranges(&self, position: [f64; D], reach: f64) -> impl Iterator<Item = Range<usize>> + '_ {
+        self.rows_round(position, reach).map(move |row| self.along_row(row, position[0], reach))
     }
 
     /// The same of those within `reach` of it in all, from fewer cells.
     #[inline(always)]
-    pub fn ranges_within(&self, place: [f64; D], reach: f64) -> impl Iterator<Item = Range<usize>> + '_ {
+    pub fn ranges_within(&self, position: [f64; D], reach: f64) -> impl Iterator<Item = Range<usize>> + '_ {
         let in_ball = move |row: [usize; D]| {
             // Half of the chord that the row's nearest line cuts from the circle or the ball, with room for rounding.
-            let off = |axis: usize| self.distance_along(axis, row[axis], place[axis]);
+            let off = |axis: usize| self.distance_along(axis, row[axis], position[axis]);
             let off_squared = (1..D).rev().map(|axis| off(axis) * off(axis));
             let half_squared = off_squared.fold(reach * reach, |left, off_squared| left - off_squared);
             if half_squared < -1e-9 * reach * reach {
                 return None;
             }
-            Some(self.along_row(row, place[0], half_squared.max(0.0).sqrt() + 1e-9 * reach))
+            Some(self.along_row(row, position[0], half_squared.max(0.0).sqrt() + 1e-9 * reach))
         };
-        self.rows_round(place, reach).filter_map(in_ball)
+        self.rows_round(position, reach).filter_map(in_ball)
     }
 
-    /// Rows of cells that come within `reach` of a place along each axis but x.
+    /// Rows of cells that come within `reach` of a position along each axis but x.
     #[inline(always)]
-    fn rows_round(&self, place: [f64; D], reach: f64) -> impl Iterator<Item = [usize; D]> {
-        let first: [usize; D] = std::array::from_fn(|axis| self.along(axis, place[axis] - reach));
-        let last: [usize; D] = std::array::from_fn(|axis| self.along(axis, place[axis] + reach));
+    fn rows_round(&self, position: [f64; D], reach: f64) -> impl Iterator<Item = [usize; D]> {
+        let first: [usize; D] = std::array::from_fn(|axis| self.along(axis, position[axis] - reach));
+        let last: [usize; D] = std::array::from_fn(|axis| self.along(axis, position[axis] + reach));
         std::iter::successors(Some(first), move |row| following(*row, first, last))
     }
 
@@ -187,8 +187,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn covers_all_within_reach<const D: usize>(places: &[[f64; 3]], looks: &[[f64; 3]], reach: f64, size: [f64; D]) {
-        let along = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<f64>>();
+    fn covers_all_within_reach<const D: usize>(positions: &[[f64; 3]], looks: &[[f64; 3]], reach: f64, size: [f64; D]) {
+        let along = |axis: usize| positions.iter().map(|position| position[axis]).collect::<Vec<f64>>();
         let columns: [Vec<f64>; D] = std::array::from_fn(along);
         let mut cells = Cells::<D>::default();
         let order = cells.sort(columns.each_ref().map(|column| &column[..]), size).to_vec();
@@ -196,20 +196,23 @@ mod tests {
         all.sort_unstable();
         assert!(all.iter().enumerate().all(|(k, &p)| k == p as usize));
         for look in looks {
-            let place: [f64; D] = std::array::from_fn(|axis| look[axis]);
+            let position: [f64; D] = std::array::from_fn(|axis| look[axis]);
             let found = |ranges: &mut dyn Iterator<Item = Range<usize>>| {
                 let found: Vec<u32> = ranges.flat_map(|range| order[range].to_vec()).collect();
                 assert!(found.iter().collect::<std::collections::HashSet<_>>().len() == found.len());
                 found
             };
-            let in_box = found(&mut cells.ranges(place, reach));
-            let in_ball = found(&mut cells.ranges_within(place, reach));
+            let in_box = found(&mut cells.ranges(position, reach));
+            let in_ball = found(&mut cells.ranges_within(position, reach));
             assert!(in_ball.iter().all(|number| in_box.contains(number)));
-            for (j, other) in places.iter().enumerate() {
-                let apart = |axis: usize| (place[axis] - other[axis]).abs();
+            for (j, other) in positions.iter().enumerate() {
+                let apart = |axis: usize| (position[axis] - other[axis]).abs();
                 let squared: f64 = (0..D).map(|axis| apart(axis).powi(2)).sum();
-                assert!(squared >= reach * reach || in_ball.contains(&(j as u32)), "{place:?} {other:?}");
-                assert!((0..D).any(|axis| apart(axis) >= reach) || in_box.contains(&(j as u32)), "{place:?} {other:?}");
+                assert!(squared >= reach * reach || in_ball.contains(&(j as u32)), "{position:?} {other:?}");
+                assert!(
+                    (0..D).any(|axis| apart(axis) >= reach) || in_box.contains(&(j as u32)),
+                    "{position:?} {other:?}"
+                );
             }
         }
     }
@@ -218,28 +221,28 @@ mod tests {
         /// In a part of the room, with its own particles in another order and some of those beyond it, neighbours are those in the whole and in the same order.
         #[test]
         fn neighbours_in_a_part_are_those_in_the_whole(
-            places in prop::collection::vec(prop::array::uniform3(0.0..8.0f64), 1..300),
+            positions in prop::collection::vec(prop::array::uniform3(0.0..8.0f64), 1..300),
             corners in prop::array::uniform3((0.0..8.0f64, 0.0..8.0f64)),
             low in prop::array::uniform3(-3.0..0.0f64),
             reach in 0.3..2.0f64,
         ) {
             let part = [corners.map(|(a, b)| a.min(b)), corners.map(|(a, b)| a.max(b))];
-            let is_in = |place: &[f64; 3], more: f64| {
-                (0..3).all(|axis| (part[0][axis] - more..=part[1][axis] + more).contains(&place[axis]))
+            let is_in = |position: &[f64; 3], more: f64| {
+                (0..3).all(|axis| (part[0][axis] - more..=part[1][axis] + more).contains(&position[axis]))
             };
-            let all: Vec<(u64, [f64; 3])> = (0..).zip(places).collect();
-            let near: Vec<_> = all.iter().rev().copied().filter(|(_, place)| is_in(place, 1.5 * reach)).collect();
+            let all: Vec<(u64, [f64; 3])> = (0..).zip(positions).collect();
+            let near: Vec<_> = all.iter().rev().copied().filter(|(_, position)| is_in(position, 1.5 * reach)).collect();
             // Identities of the neighbours of each particle of the part, in order.
             let neighbours = |of: &[(u64, [f64; 3])], bounds: [[f64; 3]; 2]| {
-                let column = |axis: usize| of.iter().map(|(_, place)| place[axis]).collect::<Vec<f64>>();
+                let column = |axis: usize| of.iter().map(|(_, position)| position[axis]).collect::<Vec<f64>>();
                 let columns: [Vec<f64>; 3] = std::array::from_fn(column);
                 let mut cells = Cells::<3>::default();
                 cells.sort_part(columns.each_ref().map(|column| &column[..]), Cells::<3>::sizes_for(reach), low, bounds);
                 let order = cells.sort_each_cell_by(|particle| of[particle as usize].0).to_vec();
                 let mut found = std::collections::BTreeMap::new();
-                for (id, place) in of.iter().filter(|(_, place)| is_in(place, 0.0)) {
-                    let candidates = cells.ranges_within(*place, reach).flatten().map(|at| of[order[at] as usize]);
-                    let squared = |other: [f64; 3]| (0..3).map(|axis| (other[axis] - place[axis]).powi(2)).sum::<f64>();
+                for (id, position) in of.iter().filter(|(_, position)| is_in(position, 0.0)) {
+                    let candidates = cells.ranges_within(*position, reach).flatten().map(|at| of[order[at] as usize]);
+                    let squared = |other: [f64; 3]| (0..3).map(|axis| (other[axis] - position[axis]).powi(2)).sum::<f64>();
                     let within: Vec<u64> =
                         candidates.filter(|(_, other)| squared(*other) < reach * reach).map(|(id, _)| id).collect();
                     found.insert(*id, within);
@@ -253,13 +256,13 @@ mod tests {
 
         #[test]
         fn ranges_cover_all_within_reach(
-            places in prop::collection::vec(prop::array::uniform3(-5.0..8.0f64), 1..200),
+            positions in prop::collection::vec(prop::array::uniform3(-5.0..8.0f64), 1..200),
             looks in prop::collection::vec(prop::array::uniform3(-7.0..9.0f64), 1..20),
             reach in 0.2..5.0f64,
             finer in 1.0..5.0f64,
         ) {
-            covers_all_within_reach::<2>(&places, &looks, reach, [reach / finer, reach]);
-            covers_all_within_reach::<3>(&places, &looks, reach, [reach / finer, reach, reach]);
+            covers_all_within_reach::<2>(&positions, &looks, reach, [reach / finer, reach]);
+            covers_all_within_reach::<3>(&positions, &looks, reach, [reach / finer, reach, reach]);
         }
     }
 }

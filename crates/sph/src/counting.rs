@@ -16,9 +16,9 @@ pub(crate) fn sort(cell_of: &[u32], cells: usize, start: &mut Vec<u32>, order: &
     }
     order.resize(cell_of.len(), 0);
     for (particle, &cell) in cell_of.iter().enumerate() {
-        let place = &mut start[cell as usize];
-        order[*place as usize] = particle as u32;
-        *place += 1;
+        let slot = &mut start[cell as usize];
+        order[*slot as usize] = particle as u32;
+        *slot += 1;
     }
     // Each start has moved to its cell's end, which is the next cell's start.
     start.copy_within(0..cells, 1);

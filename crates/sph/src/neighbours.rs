@@ -40,8 +40,8 @@ pub trait Reach<const D: usize>: Sync {
     /// Whether lists keep distances, for later passes. Otherwise sums are given squares, which are not kept.
     const DISTANCES: bool;
 
-    /// Search radius of particle `i` at `place`, m.
-    fn farthest(&self, cells: &Cells<D>, i: usize, place: [f64; D]) -> f64;
+    /// Search radius of particle `i` at `position`, m.
+    fn farthest(&self, cells: &Cells<D>, i: usize, position: [f64; D]) -> f64;
 
     /// Squares of the distances within which the particles from `at` on are neighbours of particle `i`, m2.
     fn squared<S: Simd>(&self, simd: S, i: usize, at: usize) -> Lanes<S>;
@@ -94,10 +94,10 @@ impl Reach<2> for EachReach<'_> {
     const DISTANCES: bool = true;
 
     #[inline(always)]
-    fn farthest(&self, cells: &Cells<2>, i: usize, place: [f64; 2]) -> f64 {
+    fn farthest(&self, cells: &Cells<2>, i: usize, position: [f64; 2]) -> f64 {
         match self.near {
             Near::Reached => self.squared[i].sqrt(),
-            Near::Either => cells.reach_at(place),
+            Near::Either => cells.reach_at(position),
         }
     }
 
@@ -133,20 +133,20 @@ impl PairSum<()> for () {
 }
 
 impl NeighbourLists {
-    /// Finds the neighbours of all particles, whose `places` are in the order of `cells`. `sum` is called once for every particle that it requires, and
+    /// Finds the neighbours of all particles, whose `positions` are in the order of `cells`. `sum` is called once for every particle that it requires, and
     /// its result goes to `out`.
     pub fn search<const D: usize, T: Send>(
         &mut self,
         cells: &Cells<D>,
-        places: [&[f64]; D],
+        positions: [&[f64]; D],
         reach: &impl Reach<D>,
         out: &mut [T],
         sum: &impl PairSum<T>,
     ) {
-        self.blocks.resize_with(places[0].len().div_ceil(BLOCK), Block::default);
+        self.blocks.resize_with(positions[0].len().div_ceil(BLOCK), Block::default);
         self.blocks.par_iter_mut().zip(out.par_chunks_mut(BLOCK)).enumerate().for_each(|(number, (block, out))| {
             let first = number * BLOCK;
-            dispatch!(Level::new(), simd => search_block(simd, block, cells, places, reach, first, out, sum));
+            dispatch!(Level::new(), simd => search_block(simd, block, cells, positions, reach, first, out, sum));
         });
     }
 
@@ -179,7 +179,7 @@ fn search_block<S: Simd, const D: usize, T, R: Reach<D>>(
     simd: S,
     block: &mut Block,
     cells: &Cells<D>,
-    places: [&[f64]; D],
+    positions: [&[f64]; D],
     reach: &R,
     first: usize,
     out: &mut [T],
@@ -195,17 +195,17 @@ fn search_block<S: Simd, const D: usize, T, R: Reach<D>>(
             start.push(begin as u32);
             continue;
         }
-        let place: [f64; D] = std::array::from_fn(|axis| places[axis][i]);
+        let position: [f64; D] = std::array::from_fn(|axis| positions[axis][i]);
         // Where the distances of this particle begin.
         let apart = if R::DISTANCES { begin } else { 0 };
         let mut found = 0;
-        for range in cells.ranges_within(place, reach.farthest(cells, i, place)) {
+        for range in cells.ranges_within(position, reach.farthest(cells, i, position)) {
             // Room for every candidate and for the lanes written beyond the last.
             let room = found + range.len() + 2 * LANES;
             make_room(index, begin + room);
             make_room(distance, apart + room);
             let (index, distance) = (&mut index[begin + found..], &mut distance[apart + found..]);
-            found += keep_near(simd, index, distance, places, reach, i, range);
+            found += keep_near(simd, index, distance, positions, reach, i, range);
         }
         let filled = found.next_multiple_of(LANES);
         make_room(index, begin + filled);
@@ -239,12 +239,12 @@ fn keep_near<S: Simd, const D: usize>(
     simd: S,
     index: &mut [u32],
     distance: &mut [f64],
-    places: [&[f64]; D],
+    positions: [&[f64]; D],
     reach: &impl Reach<D>,
     i: usize,
     range: Range<usize>,
 ) -> usize {
-    let place: [f64; D] = std::array::from_fn(|axis| places[axis][i]);
+    let position: [f64; D] = std::array::from_fn(|axis| positions[axis][i]);
     let counting = u32x8::from_fn(simd, |lane| lane as u32);
     let mut kept = 0;
     let mut at = range.start;
@@ -252,7 +252,7 @@ fn keep_near<S: Simd, const D: usize>(
         let lanes = (range.end - at).min(LANES);
         let mut squared = Lanes::splat(simd, 0.0);
         for axis in 0..D {
-            let apart = load(simd, places[axis], at) - place[axis];
+            let apart = load(simd, positions[axis], at) - position[axis];
             squared = if axis == 0 { apart * apart } else { squared + apart * apart };
         }
         let mut near = squared.simd_lt(reach.squared(simd, i, at)).to_bitmask() & ((1 << lanes) - 1);
@@ -307,9 +307,9 @@ mod tests {
         }
     }
 
-    /// Places in sorted order, with the reach of each.
-    fn sorted<const D: usize>(cells: &mut Cells<D>, places: &[[f64; 4]], size: f64) -> ([Vec<f64>; D], Vec<f64>) {
-        let column = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<f64>>();
+    /// Points in sorted order, with the reach of each.
+    fn sorted<const D: usize>(cells: &mut Cells<D>, points: &[[f64; 4]], size: f64) -> ([Vec<f64>; D], Vec<f64>) {
+        let column = |axis: usize| points.iter().map(|point| point[axis]).collect::<Vec<f64>>();
         let columns: [Vec<f64>; D] = std::array::from_fn(column);
         let order = cells.sort(columns.each_ref().map(|column| &column[..]), [size; D]).to_vec();
         let pick = |values: &[f64]| order.iter().map(|&p| values[p as usize]).collect::<Vec<_>>();
@@ -344,12 +344,12 @@ mod tests {
     proptest! {
         #[test]
         fn finds_what_all_pairs_find_where_each_has_its_reach(
-            places in prop::collection::vec((0.0..30.0f64, 0.0..30.0f64, 0.5..6.0f64), 0..150),
+            points in prop::collection::vec((0.0..30.0f64, 0.0..30.0f64, 0.5..6.0f64), 0..150),
             near in prop::sample::select(vec![Near::Reached, Near::Either]),
         ) {
-            let places: Vec<_> = places.into_iter().map(|(x, y, reach)| [x, y, 0.0, reach]).collect();
+            let points: Vec<_> = points.into_iter().map(|(x, y, reach)| [x, y, 0.0, reach]).collect();
             let mut cells = Cells::<2>::default();
-            let (columns, reach) = sorted(&mut cells, &places, 3.0);
+            let (columns, reach) = sorted(&mut cells, &points, 3.0);
             cells.set_reach(&reach);
             let squared: Vec<f64> = reach.iter().map(|r| r * r).collect();
             let within = |i: usize, j: usize| if near == Near::Either { squared[i].max(squared[j]) } else { squared[i] };
@@ -358,15 +358,15 @@ mod tests {
 
         #[test]
         fn finds_what_all_pairs_find_where_all_have_one_reach(
-            places in prop::collection::vec(prop::array::uniform3(0.0..6.0f64), 0..400),
+            points in prop::collection::vec(prop::array::uniform3(0.0..6.0f64), 0..400),
             reach in 0.3..3.0f64,
         ) {
-            let places: Vec<_> = places.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect();
+            let points: Vec<_> = points.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect();
             let mut plane = Cells::<2>::default();
-            let (columns, _) = sorted(&mut plane, &places, reach);
+            let (columns, _) = sorted(&mut plane, &points, reach);
             finds_what_all_pairs_find(&plane, &columns, &OneReach(reach), |_, _| reach * reach);
             let mut space = Cells::<3>::default();
-            let (columns, _) = sorted(&mut space, &places, reach);
+            let (columns, _) = sorted(&mut space, &points, reach);
             finds_what_all_pairs_find(&space, &columns, &OneReach(reach), |_, _| reach * reach);
         }
     }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 impl Cells<2> {
     /// Sets how far particles reach: `reach[k]` of the k-th particle in sorted order, m. After this a search from any
-    /// place covers all particles that reach it, whether or not it reaches them.
+    /// position covers all particles that reach it, whether or not it reaches them.
     ///
     /// A reach spreads to the cells that it touches first along the rows, then from row to row: a few cells more than a
     /// circle would touch, for far less work.
@@ -51,8 +51,8 @@ impl Cells<2> {
 
     /// Search radius from a position that finds all particles whose support covers it.
     #[inline]
-    pub fn reach_at(&self, place: [f64; 2]) -> f64 {
-        self.reach[self.along(1, place[1]) * self.count[0] + self.along(0, place[0])]
+    pub fn reach_at(&self, position: [f64; 2]) -> f64 {
+        self.reach[self.along(1, position[1]) * self.count[0] + self.along(0, position[0])]
     }
 }
 
@@ -63,23 +63,23 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_search_finds_all_that_reach_the_place(
-            places in prop::collection::vec((-50.0..50.0f64, -20.0..80.0f64, 0.1..9.0f64), 0..120),
+        fn a_search_finds_all_that_reach_the_point(
+            points in prop::collection::vec((-50.0..50.0f64, -20.0..80.0f64, 0.1..9.0f64), 0..120),
             size in 0.5..20.0f64,
         ) {
-            let x: Vec<f64> = places.iter().map(|p| p.0).collect();
-            let y: Vec<f64> = places.iter().map(|p| p.1).collect();
+            let x: Vec<f64> = points.iter().map(|p| p.0).collect();
+            let y: Vec<f64> = points.iter().map(|p| p.1).collect();
             let mut cells = Cells::default();
             let order = cells.sort([&x, &y], [size, size]).to_vec();
-            let reach: Vec<f64> = order.iter().map(|&p| places[p as usize].2).collect();
+            let reach: Vec<f64> = order.iter().map(|&p| points[p as usize].2).collect();
             cells.set_reach(&reach);
-            for (i, place) in places.iter().enumerate() {
+            for (i, point) in points.iter().enumerate() {
                 let at = [x[i], y[i]];
                 let found: Vec<u32> =
                     cells.ranges_within(at, cells.reach_at(at)).flat_map(|range| order[range].to_vec()).collect();
-                for (j, other) in places.iter().enumerate() {
+                for (j, other) in points.iter().enumerate() {
                     let distance = ((x[i] - x[j]).powi(2) + (y[i] - y[j]).powi(2)).sqrt();
-                    if distance < place.2.max(other.2) {
+                    if distance < point.2.max(other.2) {
                         prop_assert!(found.contains(&(j as u32)));
                     }
                 }

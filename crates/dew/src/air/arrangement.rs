@@ -3,14 +3,13 @@
 //! Cells are the same for any distribution of the air over processes, and within a cell particles stand by their identities: so neighbours have the same order
 //! everywhere.
 
-use super::Particle;
-use crate::domain::HaloParticle;
-use crate::faces::BEYOND;
+use super::{HaloParticle, Particle};
+use crate::constants::BEYOND;
 use crate::room::{Face, Room};
 use corpuscle_sph::{Cells, FEWEST, NeighbourLists};
 use rayon::prelude::*;
 
-/// What stands at a place of the arrangement.
+/// What stands at an index of the arrangement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
     /// The particle, as arranged: itself, or what it is a ghost particle of. Those of the halo are counted after the own.
@@ -28,15 +27,15 @@ pub struct Arrangement {
     pub cells: Cells<3>,
     /// Neighbour lists of the particles.
     pub lists: NeighbourLists,
-    /// What stands at each place.
+    /// What stands at each index.
     pub entries: Vec<Entry>,
-    /// Place of each particle.
-    pub place_of: Vec<u32>,
-    /// Coordinates of the places, m.
+    /// Index of each particle.
+    pub index_of: Vec<u32>,
+    /// Coordinates of the positions, m.
     pub x: Vec<f64>,
-    /// Coordinates of the places, m.
+    /// Coordinates of the positions, m.
     pub y: Vec<f64>,
-    /// Coordinates of the places, m.
+    /// Coordinates of the positions, m.
     pub z: Vec<f64>,
     unsorted: [Vec<f64>; 3],
     ids: Vec<u64>,
@@ -62,9 +61,9 @@ impl Part {
     /// The whole room.
     pub const WHOLE: Self = Self([[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]]);
 
-    /// Whether a place lies in it.
-    pub fn contains(&self, place: [f64; 3]) -> bool {
-        (0..3).all(|axis| (self.0[0][axis]..=self.0[1][axis]).contains(&place[axis]))
+    /// Whether a position lies in it.
+    pub fn contains(&self, position: [f64; 3]) -> bool {
+        (0..3).all(|axis| (self.0[0][axis]..=self.0[1][axis]).contains(&position[axis]))
     }
 }
 
@@ -112,13 +111,13 @@ impl Arrangement {
         for (out, values) in [(&mut self.x, x), (&mut self.y, y), (&mut self.z, z)] {
             order.par_iter().with_min_len(FEWEST).map(|&from| values[from as usize]).collect_into_vec(out);
         }
-        self.place_of.clear();
+        self.index_of.clear();
         self.spare.clear();
         self.new_number.resize(count, 0);
-        for (place, &from) in order.iter().enumerate() {
+        for (index, &from) in order.iter().enumerate() {
             if let Some(particle) = particles.get(from as usize) {
                 self.new_number[from as usize] = self.spare.len() as u32;
-                self.place_of.push(place as u32);
+                self.index_of.push(index as u32);
                 self.spare.push(*particle);
             }
         }
@@ -157,26 +156,26 @@ impl Arrangement {
         }
     }
 
-    /// Whether air in the part that was arranged can be within the reach of a place.
-    pub fn may_be_near(&self, place: [f64; 3]) -> bool {
-        self.part.contains(place)
+    /// Whether air in the part that was arranged can be within the reach of a position.
+    pub fn may_be_near(&self, position: [f64; 3]) -> bool {
+        self.part.contains(position)
     }
 
-    /// The places' coordinates.
-    pub fn places(&self) -> [&[f64]; 3] {
+    /// Coordinates of the positions, by axis, m.
+    pub fn positions(&self) -> [&[f64]; 3] {
         [&self.x, &self.y, &self.z]
     }
 
-    /// Where a place is, m.
-    pub fn at(&self, place: usize) -> [f64; 3] {
-        [self.x[place], self.y[place], self.z[place]]
+    /// Position of what stands at an index, m.
+    pub fn at(&self, index: usize) -> [f64; 3] {
+        [self.x[index], self.y[index], self.z[index]]
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let columns = 7 * 8 * self.x.capacity();
         let spare = self.spare.capacity() * size_of::<Particle>();
-        let numbers = 4 * (self.place_of.capacity() + self.new_number.capacity());
+        let numbers = 4 * (self.index_of.capacity() + self.new_number.capacity());
         self.cells.bytes()
             + self.lists.bytes()
             + columns

@@ -8,7 +8,7 @@ use corpuscle_sph::{
 };
 use rayon::prelude::*;
 
-/// Sums over the neighbours of a place.
+/// Sums over the neighbours of a particle.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Sums {
     /// sum V W, itself included: 1 on the lattice.
@@ -19,7 +19,7 @@ pub struct Sums {
 
 struct Filling<'a> {
     entries: &'a [Entry],
-    places: [&'a [f64]; 3],
+    positions: [&'a [f64]; 3],
     scale: Scale,
 }
 
@@ -28,24 +28,24 @@ impl Arrangement {
     pub fn search(&mut self, scale: &Scale, sums: &mut Vec<Sums>) {
         sums.resize(self.entries.len(), Sums::default());
         let Self { cells, lists, entries, x, y, z, .. } = self;
-        let places: [&[f64]; 3] = [x, y, z];
-        lists.search(cells, places, &OneReach(scale.h()), sums, &Filling { entries, places, scale: *scale });
+        let positions: [&[f64]; 3] = [x, y, z];
+        lists.search(cells, positions, &OneReach(scale.h()), sums, &Filling { entries, positions, scale: *scale });
     }
 
     /// Finds the tensor by which each particle's diffusion is normalised.
     pub fn normalise(&self, sums: &[Sums], tensors: &mut Vec<Tensor>) {
-        tensors.resize(self.place_of.len(), Tensor::default());
-        tensors.par_chunks_mut(BLOCK).zip(self.place_of.par_chunks(BLOCK)).for_each(|(tensors, places)| {
-            dispatch!(Level::new(), simd => normalise_block(simd, sums, places, tensors));
+        tensors.resize(self.index_of.len(), Tensor::default());
+        tensors.par_chunks_mut(BLOCK).zip(self.index_of.par_chunks(BLOCK)).for_each(|(tensors, indices)| {
+            dispatch!(Level::new(), simd => normalise_block(simd, sums, indices, tensors));
         });
     }
 }
 
 #[inline(always)]
-fn normalise_block<S: Simd>(simd: S, sums: &[Sums], places: &[u32], tensors: &mut [Tensor]) {
-    for (tensors, places) in tensors.chunks_mut(LANES).zip(places.chunks(LANES)) {
+fn normalise_block<S: Simd>(simd: S, sums: &[Sums], indices: &[u32], tensors: &mut [Tensor]) {
+    for (tensors, indices) in tensors.chunks_mut(LANES).zip(indices.chunks(LANES)) {
         // The last one fills up what is missing.
-        let at = |lane: usize| places[lane.min(places.len() - 1)] as usize;
+        let at = |lane: usize| indices[lane.min(indices.len() - 1)] as usize;
         let moments: [&Moments; LANES] = std::array::from_fn(|lane| &sums[at(lane)].moments);
         let found = normalisation::tensors(simd, moments);
         tensors.copy_from_slice(&found[..tensors.len()]);
@@ -58,17 +58,17 @@ impl PairSum<Sums> for Filling<'_> {
     }
 
     #[inline(always)]
-    fn sum<S: Simd>(&self, simd: S, place: usize, found: Neighbours) -> Sums {
+    fn sum<S: Simd>(&self, simd: S, own: usize, found: Neighbours) -> Sums {
         let Scale { volume, kernel, to_density, moment: of_lattice, .. } = self.scale;
-        let [x, y, z] = self.places;
+        let [x, y, z] = self.positions;
         let mut filling = Lanes::splat(simd, 0.0);
         let mut moments = [Lanes::splat(simd, 0.0); 15];
         for (index, r_squared) in found.lanes(simd) {
             filling += kernel.value_shape(r_squared);
             let offset = [
-                gathered(simd, x, index) - x[place],
-                gathered(simd, y, index) - y[place],
-                gathered(simd, z, index) - z[place],
+                gathered(simd, x, index) - x[own],
+                gathered(simd, y, index) - y[own],
+                gathered(simd, z, index) - z[own],
             ];
             let weight = kernel.laplacian_shape(r_squared.sqrt()) / r_squared;
             let products = normalisation::products(offset);

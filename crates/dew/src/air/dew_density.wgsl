@@ -5,12 +5,12 @@
 #import dew_normalisation
 
 // Filling and moments by the air, itself included.
-fn of_air(i: u32, place: vec3f, moments: ptr<function, Moments>) -> f32 {
+fn of_air(i: u32, position: vec3f, moments: ptr<function, Moments>) -> f32 {
     var filling = value_shape(0.0);
-    let mirrors = mirrors_round(place);
+    let mirrors = mirrors_round(position);
     for (var k = 0u; k < mirrors; k++) {
-        let mirror = mirror(k, place);
-        let truth = behind(mirror, place);
+        let mirror = mirror(k, position);
+        let truth = behind(mirror, position);
         let low = cell_index(truth - parameters.h);
         let high = cell_index(truth + parameters.h);
         for (var z = low.z; z <= high.z; z++) {
@@ -20,7 +20,7 @@ fn of_air(i: u32, place: vec3f, moments: ptr<function, Moments>) -> f32 {
                 let end = start[row + across.y + 1u];
                 var of_row = Moments();
                 for (var j = start[row + across.x]; j < end; j++) {
-                    let away = (shown(mirror, spots[j].xyz) - place) * parameters.per_h;
+                    let away = (shown(mirror, spots[j].xyz) - position) * parameters.per_h;
                     let q_squared = dot(away, away);
                     if q_squared >= 1.0 || (j == i && k == 0u) {
                         continue;
@@ -36,18 +36,18 @@ fn of_air(i: u32, place: vec3f, moments: ptr<function, Moments>) -> f32 {
 }
 
 // The same by solids: their particles and ghost samples.
-fn of_solids(place: vec3f, moments: ptr<function, Moments>) -> f32 {
+fn of_solids(position: vec3f, moments: ptr<function, Moments>) -> f32 {
     var filling = 0.0;
-    let low = cell_index(place - parameters.h);
-    let high = cell_index(place + parameters.h);
+    let low = cell_index(position - parameters.h);
+    let high = cell_index(position + parameters.h);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
-            let across = columns_round(place, y, z);
+            let across = columns_round(position, y, z);
             let row = row_of(y, z);
             let end = site_start[row + across.y + 1u];
             var of_row = Moments();
             for (var k = site_start[row + across.x]; k < end; k++) {
-                let away = (sites[k].place - place) * parameters.per_h;
+                let away = (sites[k].position - position) * parameters.per_h;
                 let q_squared = dot(away, away);
                 if q_squared >= 1.0 {
                     continue;
@@ -69,10 +69,10 @@ fn of_solids(place: vec3f, moments: ptr<function, Moments>) -> f32 {
 }
 
 // Twin of `Room::outlet_near`.
-fn outlet_near(place: vec3f) -> u32 {
+fn outlet_near(position: vec3f) -> u32 {
     for (var number = 0u; number < NO_FACE; number++) {
         let axis = number / 2u;
-        let to = select(parameters.high[axis] - place[axis], place[axis] - parameters.low[axis], number % 2u == 0u);
+        let to = select(parameters.high[axis] - position[axis], position[axis] - parameters.low[axis], number % 2u == 0u);
         if to < parameters.h && face(number) == OUTLET {
             return number;
         }
@@ -97,7 +97,7 @@ fn density_of(particle: Particle, filling: f32) -> f32 {
         let inward = max(select(-velocity, velocity, number % 2u == 0u), 0.0) / parameters.sound;
         return parameters.rest_density * (1.0 - 0.5 * inward * inward);
     }
-    let outlet = outlet_near(particle.place);
+    let outlet = outlet_near(particle.position);
     if outlet != NO_FACE {
         // Where air would flow back in there is none beyond: that must not suck.
         return max(density, parameters.rest_density * (1.0 + status.density_excess_beyond[outlet]));
@@ -120,7 +120,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     var particle = unpacked(ordered[i]);
     var moments = Moments();
-    let filling = of_air(i, particle.place, &moments) + of_solids(particle.place, &moments);
+    let filling = of_air(i, particle.position, &moments) + of_solids(particle.position, &moments);
     particle.density = density_of(particle, parameters.of_filling * filling);
     let tensor = normalised(moments);
     var velocity = particle.velocity;
@@ -136,7 +136,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         humidity = relative_humidity(vapour);
     }
     columns[i] = PackedColumn(
-        vec4f(particle.place, pressure),
+        vec4f(particle.position, pressure),
         vec4f(velocity, temperature),
         vec4f(tensor.diagonal, vapour),
         vec4f(tensor.others, humidity),

@@ -3,7 +3,7 @@
 #import compensated_sums
 
 fn unpacked(packed: Packed) -> Particle {
-    let a = packed.place_and_density;
+    let a = packed.position_and_density;
     let b = packed.velocity_and_fog;
     let c = packed.acceleration_and_deposit;
     let d = packed.spreading_and_id;
@@ -17,7 +17,7 @@ fn unpacked(packed: Packed) -> Particle {
 
 fn packed(particle: Particle) -> Packed {
     return Packed(
-        vec4f(particle.place, particle.density),
+        vec4f(particle.position, particle.density),
         vec4f(particle.velocity, particle.fog),
         vec4f(particle.acceleration, particle.deposit),
         vec4u(bitcast<vec3u>(particle.spreading), particle.id),
@@ -28,7 +28,7 @@ fn packed(particle: Particle) -> Packed {
 
 // What neighbours read of a particle; its pressure over the square of the density, Pa m6/kg2.
 struct Column {
-    place: vec3f,
+    position: vec3f,
     pressure: f32,
     velocity: vec3f,
     temperature: f32,
@@ -41,7 +41,7 @@ struct Column {
 }
 
 fn unpacked_column(packed: PackedColumn) -> Column {
-    let a = packed.place_and_pressure;
+    let a = packed.position_and_pressure;
     let b = packed.velocity_and_temperature;
     let c = packed.diagonal_and_vapour;
     let d = packed.doubled_and_humidity;

@@ -14,6 +14,7 @@ pub use density::Sums;
 #[cfg(feature = "gpu")]
 pub(crate) use pairs::DAMPING;
 pub use pairs::{Column, Rates, sum as sum_pairs};
-pub use particle::{Particle, Role};
+pub use particle::{HaloParticle, Particle, Role};
+pub(crate) use properties::{LEAST_SOUND, SOUND_OVER_MOTION};
 pub use properties::{Properties, TemperatureCoefficients};
 pub use scale::Scale;

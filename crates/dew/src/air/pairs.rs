@@ -9,11 +9,11 @@ use corpuscle_sph::kernel::SmoothingKernel;
 use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Simd, SimdBase, SimdFloat, dispatch, gather};
 use rayon::prelude::*;
 
-/// What the pass reads of a place: two rows of numbers to gather.
+/// What the pass reads of an index: two rows of numbers to gather.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub struct Column {
-    /// Place, m.
+    /// Position, m.
     pub position: [f64; 3],
     /// Velocity, m/s.
     pub velocity: [f64; 3],
@@ -68,15 +68,22 @@ fn sum_block<S: Simd>(
     rates: &mut [Rates],
 ) {
     for (k, rates) in rates.iter_mut().enumerate() {
-        let place = arrangement.place_of[first + k] as usize;
-        *rates = of_one(simd, columns, arrangement.lists.numbers_of(place), place, scale, air);
+        let index = arrangement.index_of[first + k] as usize;
+        *rates = of_one(simd, columns, arrangement.lists.numbers_of(index), index, scale, air);
     }
 }
 
 #[inline(always)]
-fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scale: &Scale, air: &Properties) -> Rates {
+fn of_one<S: Simd>(
+    simd: S,
+    columns: &[Column],
+    list: &[u32],
+    own_index: usize,
+    scale: &Scale,
+    air: &Properties,
+) -> Rates {
     let rows: &[[f64; LANES]] = bytemuck::must_cast_slice(columns);
-    let own = &columns[place];
+    let own = &columns[own_index];
     let [a, b, c, d, e, f] = own.tensor;
     let Scale { volume, kernel, to_gradient, moment, .. } = *scale;
     // a = sum m (p_i/rho_i^2 + p_j/rho_j^2) |W'| (r_i - r_j)/r (Monaghan 1992, equation 3.1).
@@ -84,7 +91,7 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
     let of_spread = 2.0 * volume * to_gradient * kernel.slope_factor();
     // Both sides' tensors, halved.
     let of_laplacian = 0.5 * volume * kernel.laplacian_factor() / moment;
-    // Distances below this are those of a place to itself.
+    // Distances below this are those of an index to itself.
     let nothing = Lanes::splat(simd, 1e-18 * kernel.support() * kernel.support());
     let zero = Lanes::splat(simd, 0.0);
     let [limit, sound, per_density] =
@@ -114,7 +121,7 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
         spread_x += slope * dx;
         spread_y += slope * dy;
         spread_z += slope * dz;
-        // Of a place to itself, which fills lists up, it is 0.
+        // Of an index to itself, which fills lists up, it is 0.
         let both = [xx + a, yy + b, zz + c, xy + d, xz + e, yz + f];
         let weight =
             kernel.laplacian_shape(r) * (normalisation::along(both, [dx, dy, dz]) * inverse * inverse) * of_laplacian;

@@ -1,17 +1,18 @@
 //! A particle of air.
 
+use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 
 /// A particle of air of constant mass that moves with the flow.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Particle {
-    /// Place, m.
+    /// Position, m.
     pub position: [f64; 3],
     /// Velocity, m/s.
     pub velocity: [f64; 3],
     /// Acceleration, m/s2.
     pub acceleration: [f64; 3],
-    /// How its place is evened out among its neighbours: times the square of the time step it is a displacement, m/s2.
+    /// How its position is evened out among its neighbours: times the square of the time step it is a displacement, m/s2.
     pub spreading: [f64; 3],
     /// Temperature, K.
     pub temperature: f64,
@@ -86,5 +87,38 @@ impl Particle {
     /// Square of the speed, m2/s2.
     pub fn speed_squared(&self) -> f64 {
         self.velocity.iter().map(|along| along * along).sum()
+    }
+
+    /// Velocity, m/s, `ahead` s on for air in the room.
+    pub fn velocity_ahead(&self, ahead: f64) -> [f64; 3] {
+        let mut velocity = self.velocity;
+        if self.role == Role::Inside {
+            (0..3).for_each(|axis| velocity[axis] += ahead * self.acceleration[axis]);
+        }
+        velocity
+    }
+}
+
+/// What is needed of a particle of another process before neighbours are searched.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct HaloParticle {
+    /// Position, m.
+    pub position: [f64; 3],
+    /// Velocity as far ahead as that of the own air, m/s.
+    pub velocity: [f64; 3],
+    /// Temperature, K.
+    pub temperature: f64,
+    /// Part of the mass that is vapour.
+    pub vapour: f64,
+    /// Lasting identity.
+    pub id: u64,
+}
+
+impl HaloParticle {
+    /// A copy of a particle, whose velocity is taken `ahead` s on.
+    pub fn new(particle: &Particle, ahead: f64) -> Self {
+        let Particle { position, temperature, vapour, id, .. } = *particle;
+        Self { position, velocity: particle.velocity_ahead(ahead), temperature, vapour, id }
     }
 }

@@ -1,9 +1,15 @@
 //! What air is like.
 
-use super::transport;
+use super::{Particle, Scale, transport};
 use crate::humid_air::{HumidAir, ZERO_CELSIUS};
 use crate::settings::Conductor;
 use serde::{Deserialize, Serialize};
+
+/// The speed of sound over the fastest motion: the density then stays within a percent (Monaghan 1994).
+pub(crate) const SOUND_OVER_MOTION: f64 = 10.0;
+
+/// Least speed of sound, m/s: air at rest stays evenly spread.
+pub(crate) const LEAST_SOUND: f64 = 0.1;
 
 /// Properties of the air: its density and heat capacity are the same everywhere (Boussinesq); how it conducts may grow with its temperature.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -82,6 +88,17 @@ impl Properties {
             sound_speed,
             spreading: 1.0,
         }
+    }
+
+    /// Mass of a particle, kg.
+    pub(crate) fn particle_mass(&self, scale: &Scale) -> f64 {
+        self.density * scale.volume
+    }
+
+    /// Energy of a particle over its mass, J/kg: its heat above 0 °C, and the heat, `latent_heat` J/kg, that its vapour gives off when it condenses.
+    pub(crate) fn energy_of(&self, particle: &Particle, latent_heat: f64) -> f64 {
+        let heat = self.heat_capacity * (particle.temperature - ZERO_CELSIUS);
+        heat + latent_heat * particle.vapour
     }
 
     /// Diffusivity of heat, m2/s.

@@ -22,16 +22,16 @@ fn keep(particle: ptr<function, Particle>) {
     for (var axis = 0u; axis < 3u; axis++) {
         let low = parameters.low[axis];
         let high = parameters.high[axis];
-        let at = (*particle).place[axis];
+        let at = (*particle).position[axis];
         if at >= low && at < high {
             continue;
         }
         let side = select(0u, 1u, at >= high);
         let rule = face(2u * axis + side);
         if rule == PERIODIC || (is_coming && axis != inlet / 2u) {
-            (*particle).place[axis] = wrapped(at, low, high);
+            (*particle).position[axis] = wrapped(at, low, high);
         } else if rule == WALL {
-            (*particle).place[axis] = mirrored_inside(at, 2u * axis + side);
+            (*particle).position[axis] = mirrored_inside(at, 2u * axis + side);
             (*particle).velocity[axis] = -(*particle).velocity[axis];
         }
     }
@@ -41,7 +41,7 @@ fn keep(particle: ptr<function, Particle>) {
 fn counted(particle: Particle, number: u32) -> BeforeOutlet {
     let axis = number / 2u;
     let at_face = select(parameters.high[axis], parameters.low[axis], number % 2u == 0u);
-    let distance = abs(particle.place[axis] - at_face);
+    let distance = abs(particle.position[axis] - at_face);
     let is_near = particle.role == INSIDE && distance < parameters.h;
     let is_nearest = is_near && distance < OUTLET_LAYER * parameters.h;
     return BeforeOutlet(
@@ -69,7 +69,7 @@ fn main(
         }
         // The transport velocity (Adami, Hu & Adams 2013, equations 6 and 8).
         let spread = clamp(step * step * particle.spreading, vec3f(-parameters.farthest), vec3f(parameters.farthest));
-        particle.place += step * particle.velocity + spread;
+        particle.position += step * particle.velocity + spread;
         keep(&particle);
         particles[i] = packed(particle);
     }

@@ -14,7 +14,7 @@ struct Rates {
     weights: f32,
 }
 
-// Distances, in h, below which two places are one.
+// Distances, in h, below which two positions are one.
 const NOTHING = 1e-9;
 
 fn of_air(i: u32, own: Column) -> Rates {
@@ -24,10 +24,10 @@ fn of_air(i: u32, own: Column) -> Rates {
     var warming = 0.0;
     var moistening = 0.0;
     var weights = 0.0;
-    let mirrors = mirrors_round(own.place);
+    let mirrors = mirrors_round(own.position);
     for (var k = 0u; k < mirrors; k++) {
-        let mirror = mirror(k, own.place);
-        let truth = behind(mirror, own.place);
+        let mirror = mirror(k, own.position);
+        let truth = behind(mirror, own.position);
         let low = cell_index(truth - parameters.h);
         let high = cell_index(truth + parameters.h);
         for (var z = low.z; z <= high.z; z++) {
@@ -36,7 +36,7 @@ fn of_air(i: u32, own: Column) -> Rates {
                 let row = row_of(y, z);
                 let end = start[row + across.y + 1u];
                 for (var j = start[row + across.x]; j < end; j++) {
-                    let away = own.place - shown(mirror, columns[j].place_and_pressure.xyz);
+                    let away = own.position - shown(mirror, columns[j].position_and_pressure.xyz);
                     let r = length(away);
                     let q = r * parameters.per_h;
                     if q >= 1.0 || q < NOTHING || (j == i && k == 0u) {
@@ -117,16 +117,16 @@ fn of_solids(own: Column, rates: ptr<function, Rates>) -> Given {
     var ghostly = vec3f(0.0);
     var repelled = vec3f(0.0);
     var stuck = 0.0;
-    let low = cell_index(own.place - parameters.h);
-    let high = cell_index(own.place + parameters.h);
+    let low = cell_index(own.position - parameters.h);
+    let high = cell_index(own.position + parameters.h);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
-            let across = columns_round(own.place, y, z);
+            let across = columns_round(own.position, y, z);
             let row = row_of(y, z);
             let end = site_start[row + across.y + 1u];
             for (var k = site_start[row + across.x]; k < end; k++) {
                 let site = sites[k];
-                let away = own.place - site.place;
+                let away = own.position - site.position;
                 let r = max(length(away), 1e-9 * parameters.spacing);
                 let q = r * parameters.per_h;
                 if q >= 1.0 {
@@ -161,7 +161,7 @@ fn driving(particle: Particle) -> vec3f {
     var driven = parameters.driven;
     for (var number = 0u; number < parameters.fans; number++) {
         let fan = fans[number];
-        if all(particle.place >= fan.low) && all(particle.place < fan.high) {
+        if all(particle.position >= fan.low) && all(particle.position < fan.high) {
             driven += fan.rate * max(fan.speed - dot(particle.velocity, fan.direction), 0.0) * fan.direction;
         }
     }

@@ -2,13 +2,12 @@
 //!
 //! A change holds from the end of the last step on, at most one step before the time shown. The energy that solids get by live changes is booked.
 
-use super::{COLD, Dew, SourceChange, State};
+use super::{COLD, Dew, SourceChange};
+use crate::air::{LEAST_SOUND, SOUND_OVER_MOTION};
 use crate::fan::Fan;
 use crate::humid_air::{HumidAir, ZERO_CELSIUS};
-use crate::open::{LEAST_SOUND, SOUND_OVER_MOTION};
-use crate::room::{Face, Inflow, Room};
-use crate::settings::Settings;
-use crate::solids::sources::BodySources;
+use crate::room::{Face, Inflow};
+use crate::state::{Overrides, State};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Table;
 use serde::{Deserialize, Serialize};
@@ -68,28 +67,6 @@ pub enum LiveChange {
     TimeFactor(f64),
     /// Something that heats or cools a solid changes.
     Source(SourceChange),
-}
-
-/// All values that live changes can set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Overrides {
-    room: Room,
-    fans: Vec<Fan>,
-    settings: Settings,
-    sound_speed: f64,
-    /// Temperature over time, °C, of the bodies that are held.
-    held_to: Vec<Option<Table>>,
-    /// Heaters, the outside, radiation.
-    sources: Vec<BodySources>,
-    /// Gravity on drops, m/s2.
-    on_drops: Option<[f64; 3]>,
-}
-
-impl Overrides {
-    /// Power of a solid's heater over time.
-    pub(super) fn heater(&self, solid: usize) -> Option<&Table> {
-        self.sources.get(solid)?.heater.as_ref().map(|(power, _)| power)
-    }
 }
 
 pub(super) fn refuse(what: impl Into<String>) -> ModelError {

@@ -1,43 +1,44 @@
 //! The model: air that moves, carries heat and vapour, and leaves water on solids.
 
 mod accelerated;
+mod drops;
+mod gauges;
+mod inventory;
 mod live_change;
 mod motion;
 mod not_finite;
 #[cfg(feature = "gpu")]
 mod on_gpu;
+mod processes;
 mod scatter;
 mod settle;
 mod source_change;
 mod transfer;
 
 pub use live_change::LiveChange;
-#[cfg(feature = "gpu")]
-pub(crate) use motion::{ACCELERATION_LIMIT, DIFFUSION_LIMIT, FARTHEST_SPREAD, VAPOUR_LIGHTNESS};
 pub use scatter::Scatter;
 pub use source_change::SourceChange;
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
-use crate::contact::Contact;
 use crate::domain::Domain;
 use crate::exchange::Work;
-use crate::faces::OpenSide;
+use crate::faces::{OpenSide, slowest};
 use crate::fan::Fan;
 use crate::humid_air;
 use crate::layer::Layer;
 use crate::normalisation::Tensor;
 use crate::room::{Face, Room};
 use crate::settings::Settings;
+use crate::solids::contact::Contact;
 use crate::solids::sources::HeatSources;
-use crate::solids::{Body, Conduction, Solids, Surface};
+use crate::solids::{Body, Conduction, Solids, Surface, bodies, wall};
+use crate::state::{Overrides, State};
 use crate::walls;
 use crate::wetting::Wetting;
 use corpuscle_model::{Account, CompensatedSum, ExactSum, ModelError};
 use corpuscle_processes::Processes;
 use corpuscle_scene::Table;
 use corpuscle_scene::dew::Output;
-use live_change::Overrides;
-use serde::{Deserialize, Serialize};
 
 /// Humid air round cold solids.
 pub struct Dew {
@@ -98,45 +99,6 @@ pub struct Dew {
     pub(crate) gpu_solver: Option<crate::gpu::GpuSolver>,
 }
 
-/// Everything that changes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct State {
-    pub time: f64,
-    pub steps: u64,
-    pub particle_steps: u64,
-    /// Largest stable time step (CFL) from here, s.
-    pub time_step: f64,
-    pub next_id: u64,
-    pub air: Vec<Particle>,
-    /// Temperature of each particle of the solids, then of each cell of the walls behind them, K.
-    pub temperatures: Vec<f64>,
-    /// Water on each particle of the solids, kg.
-    pub water_on: Vec<f64>,
-    /// Vapour that has become fog less fog that has become vapour, kg.
-    pub fogged: ExactSum,
-    /// Heat that has come from each solid held at a temperature, J; negative where it took it.
-    pub held_heat: Vec<CompensatedSum>,
-    /// Heat that each solid, then each wall, has got from its heater, from outside and by radiation, J.
-    pub supplied: Vec<[CompensatedSum; 3]>,
-    /// Heat that each solid takes from the air through its surface, W, in the last step.
-    pub heat_flow: Vec<f64>,
-    /// Time of the last search for air of low utility, s.
-    pub utility_seen: f64,
-    /// How far the air before each inlet has come since its last layer, m.
-    pub inlet_phase: [[f64; 2]; 3],
-    pub water: Account,
-    pub energy: Account,
-    /// The values after live changes; none where there was none.
-    pub overrides: Option<Overrides>,
-    /// What all air of a closed room is still to gain for accelerated time: temperature, K, and vapour, part of the mass.
-    #[serde(default)]
-    pub drift: [f64; 2],
-    /// By how much the air beyond each outlet is denser than at rest, over its density at rest.
-    pub density_excess_beyond: [[f64; 2]; 3],
-    /// Running mean, over the time in which sound crosses the room, of the velocity along its axis of the air before each outlet, m/s.
-    pub running_mean_before: [[f64; 2]; 3],
-}
-
 /// Zero of the energy's temperature, K.
 const COLD: f64 = humid_air::ZERO_CELSIUS;
 
@@ -158,7 +120,7 @@ pub struct Setup {
 
 impl Dew {
     /// Air in a room with solids, at rest on a lattice wherever there is no solid; `start` gives temperature, K, and vapour,
-    /// part of the mass, at a place.
+    /// part of the mass, at a position.
     ///
     /// # Errors
     /// Where ghost samples or air of low utility are required and a body has no surface.
@@ -264,8 +226,20 @@ impl Dew {
         Ok(dew)
     }
 
+    /// Puts walls behind the solids that have them.
+    pub(crate) fn add_walls(&mut self, bodies: &[bodies::Body]) {
+        let step = self.settings.time_factor * self.step_by_sound(0.0);
+        let temperatures = &mut self.state.temperatures;
+        let links = wall::add(bodies, &mut self.solids, temperatures, &self.room, self.scale.spacing, step);
+        if self.solids.walls.is_empty() {
+            return;
+        }
+        self.conduction.connect(self.solids.nodes(), &links);
+        self.rebuild_heat_network();
+    }
+
     /// Makes room for all that conducts heat, and counts its energy from here on, after something has been added to it.
-    pub(crate) fn rebuild_heat_network(&mut self) {
+    fn rebuild_heat_network(&mut self) {
         let groups = self.solids.groups();
         self.conductances = (0..self.solids.nodes()).map(|i| self.conduction.sum(i)).collect();
         self.state.held_heat.resize(groups, CompensatedSum::default());
@@ -276,7 +250,7 @@ impl Dew {
 
     /// Mass of an air particle, kg.
     pub fn particle_mass(&self) -> f64 {
-        self.air.density * self.scale.volume
+        self.air.particle_mass(&self.scale)
     }
 
     /// One step.
@@ -284,7 +258,7 @@ impl Dew {
         let step = self.state.time_step;
         self.drift(step);
         self.cross_faces(step);
-        self.update_utility();
+        self.inventory().update_utility();
         self.balance_if_due();
         self.evaluate(0.5 * step);
         let drift = std::mem::take(&mut self.state.drift);
@@ -358,8 +332,8 @@ impl Dew {
     }
 
     /// The air in the room.
-    pub(crate) fn inside(&self) -> impl Iterator<Item = &Particle> {
-        self.state.air.iter().filter(|particle| particle.role == Role::Inside)
+    pub(crate) fn inside(&self) -> impl Iterator<Item = &Particle> + Clone {
+        self.state.inside()
     }
 
     /// Water in the air as vapour and fog and on the solids, kg.
@@ -377,8 +351,7 @@ impl Dew {
 
     /// Energy of a particle of air, J: its heat above 0 °C, and the heat that its vapour gives off when it condenses.
     pub(crate) fn energy_of(&self, particle: &Particle) -> f64 {
-        let heat = self.air.heat_capacity * (particle.temperature - COLD);
-        self.particle_mass() * (heat + self.latent_heat * particle.vapour)
+        self.particle_mass() * self.air.energy_of(particle, self.latent_heat)
     }
 
     /// Energy of the air and of the solids that are free to warm, J.
@@ -396,9 +369,9 @@ impl Dew {
         of_air.value()
     }
 
-    /// Gives the air in the room velocities, m/s, by place. Where several processes share the air all of them call this.
+    /// Gives the air in the room velocities, m/s, by position. Where several processes share the air all of them call this.
     pub fn stir(&mut self, velocity: impl Fn([f64; 3]) -> [f64; 3]) {
-        let slowest = self.slowest();
+        let slowest = slowest(&self.air);
         for particle in &mut self.state.air {
             let velocity = velocity(particle.position);
             match particle.role {
@@ -410,8 +383,8 @@ impl Dew {
                 _ => {}
             }
         }
-        self.state.running_mean_before =
-            [0, 1, 2].map(|axis| [0, 1].map(|side| self.before_outlet(axis, side).velocity));
+        let before = self.inventory().before_outlets();
+        self.state.running_mean_before = before.map(|sides| sides.map(|before| before.velocity));
         self.move_outside();
         self.evaluate(0.0);
         self.state.time_step = self.next_step(&[], self.extremes());

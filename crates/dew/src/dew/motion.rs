@@ -1,24 +1,16 @@
 //! How the air moves in a step, and how long a step may be.
 
 use super::Dew;
-use crate::air::{Arrangement, Column, Entry, Part, Particle, Properties, Rates, Role, Sums, sum_pairs};
-use crate::domain::{Halo, HaloParticle};
-use crate::humid_air::{self, HumidAir};
+use crate::air::{Arrangement, Column, Entry, HaloParticle, Part, Particle, Properties, Rates, Role, Sums, sum_pairs};
+use crate::constants::{ACCELERATION_LIMIT, DIFFUSION_LIMIT, FARTHEST_SPREAD};
+use crate::domain::Halo;
+use crate::humid_air::{self, HumidAir, virtual_temperature};
 use crate::normalisation::{self, Tensor};
 use crate::room::Room;
 use crate::settings::Humidity;
 use crate::walls::{self, Push};
 use corpuscle_processes::Processes;
 use rayon::prelude::*;
-
-/// Acceleration limits the time step: this times the root of spacing over acceleration.
-pub(crate) const ACCELERATION_LIMIT: f64 = 0.25;
-
-/// Part of the longest step for which no diffusion overshoots its neighbours.
-pub(crate) const DIFFUSION_LIMIT: f64 = 0.9;
-
-/// A particle is not moved farther than this in a step to be evened out among its neighbours, in spacings.
-pub(crate) const FARTHEST_SPREAD: f64 = 0.05;
 
 /// The largest of what limits the time step.
 #[derive(Debug, Clone, Copy, Default)]
@@ -218,14 +210,6 @@ impl Dew {
     }
 }
 
-/// How much lighter vapour makes air: the coefficient of its mass fraction in the virtual temperature (Stull 1988, equation 1.5.1).
-pub(crate) const VAPOUR_LIGHTNESS: f64 = 0.608;
-
-/// T (1 + 0.608 Y), K: temperature at which dry air is as light.
-fn virtual_temperature(temperature: f64, vapour: f64) -> f64 {
-    temperature * (1.0 + VAPOUR_LIGHTNESS * vapour)
-}
-
 /// Sets the densities of particles.
 fn set_densities(
     arrangement: &Arrangement,
@@ -237,8 +221,8 @@ fn set_densities(
     reach: f64,
     density_excess_beyond: &[[f64; 2]; 3],
 ) {
-    particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
-        particle.density = air.density * sums[place as usize].filling;
+    particles.par_iter_mut().zip(&arrangement.index_of).with_min_len(1024).for_each(|(particle, &index)| {
+        particle.density = air.density * sums[index as usize].filling;
         if matches!(particle.role, Role::Still | Role::Idle) {
             // Where it no longer matters, the air is as it is at rest.
             particle.density = rest_density;
@@ -275,13 +259,13 @@ fn fill_columns(
             (particle.velocity_ahead(ahead), particle.density, particle.temperature, particle.vapour)
         }
     };
-    let column = |(place, entry): (usize, &Entry)| {
+    let column = |(index, entry): (usize, &Entry)| {
         let (mut velocity, density, temperature, vapour) = seen(entry.particle as usize);
         for (along, mirrored) in velocity.iter_mut().zip(entry.mirrored) {
             *along = if mirrored { -*along } else { *along };
         }
         Column {
-            position: arrangement.at(place),
+            position: arrangement.at(index),
             velocity,
             pressure: air.sound_speed * air.sound_speed * (density - rest_density) / (density * density),
             temperature,

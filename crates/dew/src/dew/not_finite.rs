@@ -1,8 +1,9 @@
 //! Ends a run in which a value is no longer finite, before anything of it is written.
 
-use super::{Dew, State};
+use super::Dew;
 use crate::air::{Part, Particle, Role};
 use crate::drops::Drop;
+use crate::state::State;
 use crate::wetting::{Wetting, WettingState};
 use corpuscle_model::ModelError;
 use rayon::prelude::*;

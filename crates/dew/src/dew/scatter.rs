@@ -22,8 +22,8 @@ pub struct Scatter {
 const SCATTER_TRIES: u32 = 30;
 
 impl Dew {
-    /// Moves the air in the room to random places outside of solids, as there from the start; `start` gives temperature, K, and
-    /// vapour, part of the mass, at a place. Where several processes share the air all of them call this, and positions depend on their number.
+    /// Moves the air in the room to random positions outside of solids, as there from the start; `start` gives temperature, K, and
+    /// vapour, part of the mass, at a position. Where several processes share the air all of them call this, and positions depend on their number.
     pub fn scatter(&mut self, scatter: Scatter, start: impl Fn([f64; 3]) -> [f64; 2]) {
         let (room, reach) = (self.room, scatter.reach * self.scale.spacing);
         let known = || self.surfaces.iter().cloned().map(Some);
@@ -33,10 +33,10 @@ impl Dew {
         let mut random = ChaCha8Rng::seed_from_u64(scatter.seed);
         for particle in self.state.air.iter_mut().filter(|particle| particle.role == Role::Inside) {
             for _ in 0..SCATTER_TRIES {
-                let mut place = particle.position.map(|at| at + reach * (2.0 * random.random::<f64>() - 1.0));
-                room.keep(&mut place, &mut [0.0; 3]);
-                if room.contains(place) && free.holds(place) {
-                    particle.position = place;
+                let mut position = particle.position.map(|at| at + reach * (2.0 * random.random::<f64>() - 1.0));
+                room.keep(&mut position, &mut [0.0; 3]);
+                if room.contains(position) && free.holds(position) {
+                    particle.position = position;
                     break;
                 }
             }

@@ -1,10 +1,10 @@
 //! The air before anything happens: spread evenly between the solids.
 
 use super::Dew;
-use super::motion::FARTHEST_SPREAD;
 use crate::air::{Rates, Role};
-use crate::contact::Pair;
+use crate::constants::FARTHEST_SPREAD;
 use crate::settings::WallTreatment;
+use crate::solids::contact::Pair;
 use crate::walls;
 use rayon::prelude::*;
 

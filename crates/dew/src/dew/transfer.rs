@@ -1,12 +1,13 @@
 //! Heat, vapour and water between air and solids in a step.
 
+use super::Dew;
 use super::accelerated::Taken;
 use super::motion::larger;
-use super::{Dew, State};
 use crate::air::{Particle, Rates, Role, order_of};
 use crate::exchange::{Exchange, ToAir, Work, excess};
 use crate::room::Face;
 use crate::settings::Condensation;
+use crate::state::State;
 use corpuscle_model::ExactSum;
 use rayon::prelude::*;
 

@@ -2,35 +2,10 @@
 
 use super::from_bytes;
 use super::tiles::Tiles;
-use crate::air::{Particle, Role};
+use crate::air::{HaloParticle, Particle};
 use crate::normalisation::Tensor;
 use crate::room::Room;
-use bytemuck::{Pod, Zeroable};
 use corpuscle_processes::Link;
-
-/// What is needed of a particle of another process before neighbours are searched.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct HaloParticle {
-    /// Position, m.
-    pub position: [f64; 3],
-    /// Velocity as far ahead as that of the own air, m/s.
-    pub velocity: [f64; 3],
-    /// Temperature, K.
-    pub temperature: f64,
-    /// Part of the mass that is vapour.
-    pub vapour: f64,
-    /// Lasting identity.
-    pub id: u64,
-}
-
-impl HaloParticle {
-    /// A copy of a particle, whose velocity is taken `ahead` s on.
-    fn new(particle: &Particle, ahead: f64) -> Self {
-        let Particle { position, temperature, vapour, id, .. } = *particle;
-        Self { position, velocity: particle.velocity_ahead(ahead), temperature, vapour, id }
-    }
-}
 
 /// Numbers that are exchanged for a particle after sums over its neighbours: density and tensor.
 const NUMBERS: usize = 7;
@@ -134,16 +109,5 @@ impl Halo {
             self.tensors.push(*tensor);
         }
         tensors.extend_from_slice(&self.tensors);
-    }
-}
-
-impl Particle {
-    /// Velocity, m/s, `ahead` s on for air in the room.
-    pub fn velocity_ahead(&self, ahead: f64) -> [f64; 3] {
-        let mut velocity = self.velocity;
-        if self.role == Role::Inside {
-            (0..3).for_each(|axis| velocity[axis] += ahead * self.acceleration[axis]);
-        }
-        velocity
     }
 }

@@ -10,15 +10,12 @@ mod solids;
 mod tiles;
 
 pub(crate) use halo::Halo;
-pub use halo::HaloParticle;
 
 use crate::air::{Part, Particle, Role};
-use crate::dew::Dew;
 use crate::normalisation::Tensor;
 use crate::room::Room;
 use bytemuck::Pod;
-use corpuscle_model::{Account, ExactSum};
-use corpuscle_processes::{Lead, Link, MAX_IMBALANCE, Processes, STEPS_BETWEEN_BALANCING, imbalance};
+use corpuscle_processes::{Lead, Link, MAX_IMBALANCE, Processes, imbalance};
 use halo::Distribution;
 use std::sync::Arc;
 use tiles::Tiles;
@@ -65,6 +62,11 @@ impl Domain {
         Some(domain)
     }
 
+    /// From here on the other processes wait for commands of the first.
+    pub fn lead(&mut self, processes: &Processes) {
+        self.lead = Some(processes.lead());
+    }
+
     /// The process of each tile, by the work in each.
     fn owners_for(&self, work: &[f64]) -> Vec<u16> {
         tiles::owners(self.tiles.counts, work, self.link.count())
@@ -101,7 +103,7 @@ impl Domain {
     }
 
     /// Sends the air that has left this part to its processes, takes what has come, and fills the halo, whose velocities are taken `ahead` s on.
-    fn share(&mut self, processes: &Processes, air: &mut Vec<Particle>, room: &Room, reach: f64, ahead: f64) {
+    pub fn share(&mut self, processes: &Processes, air: &mut Vec<Particle>, room: &Room, reach: f64, ahead: f64) {
         let mut outgoing: Vec<(usize, Vec<Particle>)> = Vec::new();
         air.retain(|particle| {
             let owner = self.owner(particle.position);
@@ -119,6 +121,30 @@ impl Domain {
         self.air = total_of(processes, air);
         let Self { link, tiles, owners, is_inner, beside, halo, .. } = self;
         halo.fill(&**link, &Distribution { tiles, owners, is_inner, beside }, air, room, reach, ahead);
+    }
+
+    /// Moves tiles to other processes where the work is distributed too unevenly. The air moves when it is shared next.
+    pub fn balance(&mut self, processes: &Processes, air: &[Particle], room: &Room, reach: f64) {
+        let mut work = self.work(air);
+        processes.total(&mut work, &mut []);
+        let work: Vec<f64> = work.into_iter().map(|count| count as f64).collect();
+        let imbalance = |owners: &[u16]| imbalance(owners, &work, processes.count());
+        let present = imbalance(&self.owners);
+        if present > MAX_IMBALANCE {
+            let owners = self.owners_for(&work);
+            if imbalance(&owners) < present {
+                self.assign(owners, room, reach);
+            }
+        }
+    }
+
+    /// Keeps of the whole air, which all processes have, the part of this one.
+    pub fn keep_part(&mut self, air: &mut Vec<Particle>, room: &Room, reach: f64) {
+        let inside = air.iter().filter(|particle| particle.role == Role::Inside).count();
+        self.air = [air.len(), inside];
+        let work: Vec<f64> = self.work(air).into_iter().map(|count| count as f64).collect();
+        self.assign(self.owners_for(&work), room, reach);
+        air.retain(|particle| self.owns(particle.position));
     }
 
     /// Exchanges densities and tensors of the air that was shared and then arranged.
@@ -150,84 +176,4 @@ fn total_of(processes: &Processes, air: &[Particle]) -> [usize; 2] {
     let mut counts = [air.len(), inside].map(|count| count as i64);
     processes.total(&mut counts, &mut []);
     counts.map(|count| count as usize)
-}
-
-impl Dew {
-    /// From here on the other processes wait for commands of the first, whose model is called: see [`Processes::follow`].
-    pub fn lead(&mut self) {
-        if let Some(domain) = &mut self.domain {
-            domain.lead = Some(self.processes.lead());
-        }
-    }
-
-    /// Whether what is at a position is computed by this process.
-    pub(crate) fn owns(&self, position: [f64; 3]) -> bool {
-        self.domain.as_ref().is_none_or(|domain| domain.owns(position))
-    }
-
-    /// Distributes the air over the processes as it stands, and fills the halo, whose velocities are taken `ahead` s on.
-    pub(crate) fn share_air(&mut self, ahead: f64) {
-        if let Some(domain) = &mut self.domain {
-            domain.share(&self.processes, &mut self.state.air, &self.room, self.scale.h(), ahead);
-        }
-    }
-
-    /// Particles of air of all processes.
-    pub(crate) fn air_count(&self) -> usize {
-        self.domain.as_ref().map_or(self.state.air.len(), |domain| domain.air[0])
-    }
-
-    /// Particles of air in the room, of all processes.
-    pub(crate) fn inside_count(&self) -> usize {
-        self.domain.as_ref().map_or_else(|| self.inside().count(), |domain| domain.air[1])
-    }
-
-    /// Moves tiles to other processes where the work is distributed too unevenly; looks at it every so many steps.
-    pub(crate) fn balance_if_due(&mut self) {
-        if self.state.steps.is_multiple_of(STEPS_BETWEEN_BALANCING) {
-            self.balance();
-        }
-    }
-
-    /// Moves tiles to other processes where the work is distributed too unevenly.
-    pub(crate) fn balance(&mut self) {
-        let Some(domain) = &mut self.domain else { return };
-        let mut work = domain.work(&self.state.air);
-        self.processes.total(&mut work, &mut []);
-        let work: Vec<f64> = work.into_iter().map(|count| count as f64).collect();
-        let imbalance = |owners: &[u16]| imbalance(owners, &work, self.processes.count());
-        let present = imbalance(&domain.owners);
-        if present > MAX_IMBALANCE {
-            let owners = domain.owners_for(&work);
-            if imbalance(&owners) < present {
-                domain.assign(owners, &self.room, self.scale.h());
-            }
-        }
-    }
-
-    /// Keeps of the whole air, which all processes have, the part of this one.
-    pub(crate) fn keep_part(&mut self) {
-        let Some(domain) = &mut self.domain else { return };
-        let air = &mut self.state.air;
-        let inside = air.iter().filter(|particle| particle.role == Role::Inside).count();
-        domain.air = [air.len(), inside];
-        let work: Vec<f64> = domain.work(air).into_iter().map(|count| count as f64).collect();
-        domain.assign(domain.owners_for(&work), &self.room, self.scale.h());
-        air.retain(|particle| domain.owns(particle.position));
-        // What was booked stands at the first process.
-        if !self.processes.is_first() {
-            for account in [&mut self.state.water, &mut self.state.energy] {
-                *account = Account { initial: account.initial, ..Account::default() };
-            }
-            self.state.fogged = ExactSum::default();
-        }
-    }
-
-    /// The accounts of water and energy, and the fog that has formed, of all processes.
-    pub(crate) fn booked(&self) -> ([Account; 2], ExactSum) {
-        let (mut accounts, mut fogged) = ([self.state.water, self.state.energy], self.state.fogged);
-        let of_accounts = accounts.iter_mut().flat_map(|account| [&mut account.inflow, &mut account.outflow]);
-        self.processes.total(&mut [], &mut of_accounts.chain([&mut fogged]).collect::<Vec<_>>());
-        (accounts, fogged)
-    }
 }

@@ -153,9 +153,9 @@ mod tests {
         assert_eq!(tiles.of([-5.0, 0.01, 9.0]), tiles.of([0.01, 0.01, 0.24]));
         // What is within reach of a position lies in its tile and those round it.
         for number in 0..1000 {
-            let place = [1.0, 0.7, 0.25].map(|side| side * f64::from(number) * 0.618).map(f64::fract);
-            let round: Vec<usize> = tiles.round(tiles.of(place)).collect();
-            assert!(tiles.near(place, 0.1).all(|tile| round.contains(&tile)), "{place:?}");
+            let position = [1.0, 0.7, 0.25].map(|side| side * f64::from(number) * 0.618).map(f64::fract);
+            let round: Vec<usize> = tiles.round(tiles.of(position)).collect();
+            assert!(tiles.near(position, 0.1).all(|tile| round.contains(&tile)), "{position:?}");
         }
     }
 

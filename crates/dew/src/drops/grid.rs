@@ -1,6 +1,6 @@
 //! Search for drops near a position, small and large ones.
 
-/// Drops (or patches) filed by place, each in cells as wide as it is or up to twice as wide: a level for each power of two of their
+/// Drops (or patches) filed by position, each in cells as wide as it is or up to twice as wide: a level for each power of two of their
 /// reach. A drop is searched in the cells of each level that it may reach from.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Grid {
@@ -12,17 +12,17 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Files drops at these places by their reach.
-    pub fn new(places: impl Iterator<Item = [f64; 3]>, reach: &[f64]) -> Self {
+    /// Files drops at these positions by their reach.
+    pub fn new(positions: impl Iterator<Item = [f64; 3]>, reach: &[f64]) -> Self {
         let smallest = reach.iter().copied().fold(f64::INFINITY, f64::min);
         let buckets = (2 * reach.len()).next_power_of_two();
         let mut grid = Self { smallest, levels: 0, starts: vec![0; buckets + 1], filed: vec![0; reach.len()] };
-        let buckets_of: Vec<usize> = places
+        let buckets_of: Vec<usize> = positions
             .zip(reach)
-            .map(|(place, &reach)| {
+            .map(|(position, &reach)| {
                 let level = grid.level(reach);
                 grid.levels = grid.levels.max(level + 1);
-                grid.bucket(level, grid.cell(level, place))
+                grid.bucket(level, grid.cell(level, position))
             })
             .collect();
         buckets_of.iter().for_each(|&bucket| grid.starts[bucket + 1] += 1);
@@ -52,9 +52,9 @@ impl Grid {
         2.0 * self.smallest * f64::from(level).exp2()
     }
 
-    fn cell(&self, level: u32, place: [f64; 3]) -> [i64; 3] {
+    fn cell(&self, level: u32, position: [f64; 3]) -> [i64; 3] {
         let side = self.side(level);
-        place.map(|x| (x / side).floor() as i64)
+        position.map(|x| (x / side).floor() as i64)
     }
 
     fn bucket(&self, level: u32, [x, y, z]: [i64; 3]) -> usize {
@@ -65,15 +65,15 @@ impl Grid {
     }
 
     /// Calls `found` with drops of at least `from_reach`, among them all whose reach and `reach` together span the way from
-    /// `place` to them. Some may be far, and some come twice.
-    pub fn near(&self, place: [f64; 3], reach: f64, from_reach: f64, mut found: impl FnMut(usize)) {
+    /// `position` to them. Some may be far, and some come twice.
+    pub fn near(&self, position: [f64; 3], reach: f64, from_reach: f64, mut found: impl FnMut(usize)) {
         if self.filed.is_empty() {
             return;
         }
         for level in self.level(from_reach)..self.levels {
             let around = reach + 0.5 * self.side(level);
-            let low = self.cell(level, place.map(|x| x - around));
-            let high = self.cell(level, place.map(|x| x + around));
+            let low = self.cell(level, position.map(|x| x - around));
+            let high = self.cell(level, position.map(|x| x + around));
             let cells: f64 = (0..3).map(|axis| (high[axis] - low[axis] + 1) as f64).product();
             if cells > self.filed.len() as f64 {
                 return (0..self.filed.len()).for_each(found);

@@ -19,7 +19,7 @@ pub struct Share {
 /// What a drop has on a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Portion {
-    /// Place of the drop in [`Drops::drops`].
+    /// Index of the drop in [`Drops::drops`].
     pub drop: u32,
     /// Number of the patch.
     pub patch: u32,

@@ -6,8 +6,8 @@ use super::{Drop, Drops, distance2, dot};
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     mass: f64,
-    /// Of mass times place.
-    place: [f64; 3],
+    /// Of mass times position.
+    position: [f64; 3],
     /// Of mass times velocity.
     momentum: [f64; 3],
     /// Of the squares of the covered radii.
@@ -15,7 +15,7 @@ struct Sums {
 }
 
 impl Drops {
-    /// Merges drops that touch until none do. Mass and momentum of what merges are those of its parts, and its place is the point
+    /// Merges drops that touch until none do. Mass and momentum of what merges are those of its parts, and its position is the point
     /// of the surface nearest to their centre of mass.
     pub(super) fn merge(&mut self) {
         loop {
@@ -60,7 +60,7 @@ impl Drops {
             sum.mass += part.mass;
             sum.area += part.radius * part.radius;
             for axis in 0..3 {
-                sum.place[axis] += part.mass * part.position[axis];
+                sum.position[axis] += part.mass * part.position[axis];
                 sum.momentum[axis] += part.mass * part.velocity[axis];
             }
             if part.mass > parts[largest[head]].mass {
@@ -76,8 +76,8 @@ impl Drops {
         self.state.merged += (parts.len() - self.state.drops.len()) as u64;
     }
 
-    fn united(&self, largest: &Drop, Sums { mass, place, momentum, area }: Sums) -> Drop {
-        let (position, normal) = self.foot(largest.solid, place.map(|sum| sum / mass));
+    fn united(&self, largest: &Drop, Sums { mass, position, momentum, area }: Sums) -> Drop {
+        let (position, normal) = self.foot(largest.solid, position.map(|sum| sum / mass));
         // The line stays round the area that the parts covered, as far as the angles let it.
         let radius = self.line.radius(area.sqrt(), mass / self.laws.density);
         Drop { position, normal, mass, radius, velocity: momentum.map(|sum| sum / mass), ..*largest }

@@ -136,7 +136,7 @@ pub struct Drops {
     /// Density of nucleation sites on each solid, 1/m2.
     per_area: Vec<f64>,
     patches: Vec<Patch>,
-    /// The patches by place.
+    /// The patches by position.
     patch_grid: Grid,
     sites: Sites,
     /// The drop that covers each site, or [`NONE`].
@@ -226,9 +226,9 @@ impl Drops {
     }
 
     /// The point of a solid's surface nearest to a position, and the outward normal there.
-    fn foot(&self, solid: u32, place: [f64; 3]) -> ([f64; 3], [f64; 3]) {
-        let nearest = self.solids[solid as usize].nearest(place);
-        let foot = std::array::from_fn(|axis| place[axis] - nearest.distance * nearest.normal[axis]);
+    fn foot(&self, solid: u32, position: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+        let nearest = self.solids[solid as usize].nearest(position);
+        let foot = std::array::from_fn(|axis| position[axis] - nearest.distance * nearest.normal[axis]);
         (foot, nearest.normal)
     }
 
@@ -332,8 +332,8 @@ impl Drops {
         self.find_covered();
     }
 
-    fn is_in_room(&self, place: [f64; 3]) -> bool {
-        (0..3).all(|axis| (self.room[0][axis]..=self.room[1][axis]).contains(&place[axis]))
+    fn is_in_room(&self, position: [f64; 3]) -> bool {
+        (0..3).all(|axis| (self.room[0][axis]..=self.room[1][axis]).contains(&position[axis]))
     }
 
     /// Finds which drop covers each site: of several the largest.
@@ -365,7 +365,7 @@ impl Drops {
         });
     }
 
-    /// Files the drops by place and reach.
+    /// Files the drops by position and reach.
     fn file(&mut self) {
         let reach = |drop: &Drop| reach(drop.radius, drop.mass / self.laws.density);
         self.reach = self.state.drops.iter().map(reach).collect();

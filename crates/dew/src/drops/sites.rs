@@ -58,19 +58,19 @@ pub(super) struct Sites {
     pub pieces: Vec<Piece>,
 }
 
-/// A position on a surface.
+/// A position on a surface at which a drop may begin.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct Candidate {
     solid: u32,
     position: [f64; 3],
     normal: [f64; 3],
     /// Whether there is a nucleation site; others only measure area.
     nucleates: bool,
-    /// Its place in a random order.
+    /// Its rank in a random order.
     order: u64,
 }
 
-impl Place {
+impl Candidate {
     /// Whether another part of the surface is of the same side of the same solid.
     fn is_beside(&self, solid: u32, normal: [f64; 3]) -> bool {
         self.solid == solid && dot(self.normal, normal) > 0.5
@@ -95,13 +95,13 @@ impl Sites {
     ) -> Self {
         let of_patches: Vec<f64> = patches.iter().map(Patch::reach).collect();
         let patch_grid = Grid::new(patches.iter().map(|patch| patch.position), &of_patches);
-        let mut places = Vec::new();
+        let mut candidates = Vec::new();
         for (number, solid) in solids.iter().enumerate() {
             let Some(within) = around_patches(patches, number, reach) else { continue };
             let scatter = Scatter { solid, number: number as u32, per_area: per_area[number], reach, room, within };
-            places.extend(scatter.places(seed));
+            candidates.extend(scatter.candidates(seed));
         }
-        let mut sites = kept(&places, 2.0 * reach);
+        let mut sites = kept(&candidates, 2.0 * reach);
         let apart = |solid: u32| reach.max(0.5 / per_area[solid as usize].sqrt());
         let file = |sites: &[Site], wider: f64| {
             let wide: Vec<f64> = sites.iter().map(|site| wider * apart(site.solid)).collect();
@@ -109,18 +109,18 @@ impl Sites {
         };
         let grid = file(&sites, 1.0);
         let farthest = of_patches.iter().fold(0.0, |most: f64, &reach| most.max(PATCH_MARGIN * reach));
-        let pair = |place: &Place| {
+        let pair = |candidate: &Candidate| {
             let patch_at = |at: usize| (patches[at].solid, patches[at].normal, patches[at].position);
-            let patch = nearest(&patch_grid, place, farthest, patch_at)?;
-            if distance2(patches[patch].position, place.position) > (PATCH_MARGIN * of_patches[patch]).powi(2) {
+            let patch = nearest(&patch_grid, candidate, farthest, patch_at)?;
+            if distance2(patches[patch].position, candidate.position) > (PATCH_MARGIN * of_patches[patch]).powi(2) {
                 return None;
             }
             let site_at = |at: usize| (sites[at].solid, sites[at].normal, sites[at].position);
-            let mut around = (0..SITE_SEARCH_DOUBLINGS).map(|times| apart(place.solid) * f64::from(1 << times));
-            let site = around.find_map(|around| nearest(&grid, place, around, site_at))?;
+            let mut around = (0..SITE_SEARCH_DOUBLINGS).map(|times| apart(candidate.solid) * f64::from(1 << times));
+            let site = around.find_map(|around| nearest(&grid, candidate, around, site_at))?;
             Some((patch as u32, site as u32))
         };
-        let mut pairs: Vec<(u32, u32)> = places.par_iter().filter_map(pair).collect();
+        let mut pairs: Vec<(u32, u32)> = candidates.par_iter().filter_map(pair).collect();
         pairs.par_sort_unstable();
         add_bare_patches(&mut pairs, &mut sites, patches);
         let pieces = pieces(&pairs, &mut sites, patches.len());
@@ -166,7 +166,7 @@ fn around_patches(patches: &[Patch], solid: usize, reach: f64) -> Option<[[f64; 
 impl Scatter<'_> {
     /// Positions on the surface. They are drawn evenly from the space within `reach` outside of it, cube by cube, each with
     /// random numbers of its own.
-    fn places(&self, seed: u64) -> Vec<Place> {
+    fn candidates(&self, seed: u64) -> Vec<Candidate> {
         let mut cubes = Vec::new();
         let [low, high] = self.solid.bounds();
         let side = (0..3).map(|axis| high[axis] - low[axis] + 2.0 * self.reach).fold(0.0, f64::max);
@@ -175,7 +175,7 @@ impl Scatter<'_> {
         let drawn = cubes.par_iter().flat_map_iter(|cube| {
             let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_add(u64::from(self.number) << 32));
             random.set_stream(cube.number);
-            self.places_in(cube, &mut random)
+            self.candidates_in(cube, &mut random)
         });
         drawn.collect()
     }
@@ -209,7 +209,7 @@ impl Scatter<'_> {
         (MIN_SAMPLES_PER_SOLID / self.solid.area()).clamp(least, MAX_SAMPLE_RATIO * least)
     }
 
-    fn places_in(&self, cube: &Cube, random: &mut ChaCha8Rng) -> Vec<Place> {
+    fn candidates_in(&self, cube: &Cube, random: &mut ChaCha8Rng) -> Vec<Candidate> {
         let &Cube { middle, side, .. } = cube;
         let per_area = self.samples_per_area();
         let expected = per_area / self.reach * side.powi(3);
@@ -219,13 +219,13 @@ impl Scatter<'_> {
                 let drawn = middle.map(|x| x + side * random.random_range(-0.5..0.5));
                 let nucleates = random.random_range(0.0..1.0) * per_area < self.per_area;
                 let order = random.random();
-                self.place(drawn, nucleates, order)
+                self.candidate(drawn, nucleates, order)
             })
             .collect()
     }
 
     /// The point of the surface below a point within reach of it; none below what is nearest to an edge or beyond the room.
-    fn place(&self, drawn: [f64; 3], nucleates: bool, order: u64) -> Option<Place> {
+    fn candidate(&self, drawn: [f64; 3], nucleates: bool, order: u64) -> Option<Candidate> {
         let nearest = self.solid.nearest(drawn);
         if nearest.distance <= 0.0 || nearest.distance > self.reach {
             return None;
@@ -239,25 +239,26 @@ impl Scatter<'_> {
         if !is_in_room || is_at_edge() {
             return None;
         }
-        Some(Place { solid: self.number, position, normal: nearest.normal, nucleates, order })
+        Some(Candidate { solid: self.number, position, normal: nearest.normal, nucleates, order })
     }
 }
 
-/// Places that are compared with the sites before them at once.
-const PLACES_AT_ONCE: usize = 1 << 14;
+/// Candidates that are compared with the sites before them at once.
+const CANDIDATES_AT_ONCE: usize = 1 << 14;
 
-/// Of the places that nucleate, solid by solid and one after another in their random order, those that no kept one is nearer to than `apart`, m.
-fn kept(places: &[Place], apart: f64) -> Vec<Site> {
-    let nucleating = places.iter().enumerate().filter(|(_, place)| place.nucleates);
-    let mut order: Vec<(u32, u64, u32)> = nucleating.map(|(at, place)| (place.solid, place.order, at as u32)).collect();
+/// Of the candidates that nucleate, solid by solid and one after another in their random order, those that no kept one is nearer to than `apart`, m.
+fn kept(candidates: &[Candidate], apart: f64) -> Vec<Site> {
+    let nucleating = candidates.iter().enumerate().filter(|(_, candidate)| candidate.nucleates);
+    let mut order: Vec<(u32, u64, u32)> =
+        nucleating.map(|(at, candidate)| (candidate.solid, candidate.order, at as u32)).collect();
     order.par_sort_unstable();
     let mut cells = Cells::new(apart);
-    for some in order.chunks(PLACES_AT_ONCE) {
-        let is_free = |place: &&Place| !cells.has_beside(place, apart);
-        let free: Vec<&Place> = some.par_iter().map(|&(.., at)| &places[at as usize]).filter(is_free).collect();
-        for place in free {
-            if !cells.has_beside(place, apart) {
-                let Place { solid, position, normal, .. } = *place;
+    for some in order.chunks(CANDIDATES_AT_ONCE) {
+        let is_free = |candidate: &&Candidate| !cells.has_beside(candidate, apart);
+        let free: Vec<&Candidate> = some.par_iter().map(|&(.., at)| &candidates[at as usize]).filter(is_free).collect();
+        for candidate in free {
+            if !cells.has_beside(candidate, apart) {
+                let Candidate { solid, position, normal, .. } = *candidate;
                 cells.add(Site { solid, position, normal, patch: 0 });
             }
         }
@@ -280,8 +281,8 @@ impl Cells {
         Self { side: 2.0 * within, sites: Vec::new(), last: FxHashMap::default(), before: Vec::new() }
     }
 
-    fn cell(&self, place: [f64; 3]) -> [i64; 3] {
-        place.map(|x| (x / self.side).floor() as i64)
+    fn cell(&self, position: [f64; 3]) -> [i64; 3] {
+        position.map(|x| (x / self.side).floor() as i64)
     }
 
     fn add(&mut self, site: Site) {
@@ -291,18 +292,19 @@ impl Cells {
         self.sites.push(site);
     }
 
-    /// Whether a site is nearer to a place than `apart`, m, on the same side of the same solid.
-    fn has_beside(&self, place: &Place, apart: f64) -> bool {
+    /// Whether a site is nearer to a candidate than `apart`, m, on the same side of the same solid.
+    fn has_beside(&self, candidate: &Candidate, apart: f64) -> bool {
         let is_near = |other: &Site| {
-            distance2(other.position, place.position) < apart * apart && place.is_beside(other.solid, other.normal)
+            distance2(other.position, candidate.position) < apart * apart
+                && candidate.is_beside(other.solid, other.normal)
         };
-        self.around(place.position).any(is_near)
+        self.around(candidate.position).any(is_near)
     }
 
-    /// Sites, among them all that are as near to a place as half a cell; those of its own cell first.
-    fn around(&self, place: [f64; 3]) -> impl Iterator<Item = &Site> {
-        let own = self.cell(place);
-        let beside = self.cell(place.map(|x| x - 0.5 * self.side));
+    /// Sites, among them all that are as near to a position as half a cell; those of its own cell first.
+    fn around(&self, position: [f64; 3]) -> impl Iterator<Item = &Site> {
+        let own = self.cell(position);
+        let beside = self.cell(position.map(|x| x - 0.5 * self.side));
         // Of the cells before and behind its own the nearer one.
         let nearer = |axis: usize| if beside[axis] < own[axis] { own[axis] - 1 } else { own[axis] + 1 };
         let cells = [0, 1, 2].map(|axis| [own[axis], nearer(axis)]);
@@ -314,13 +316,18 @@ impl Cells {
 }
 
 /// The nearest within a distance on the same side of the same solid, where `of` gives solid, normal and position of each in `grid`.
-fn nearest(grid: &Grid, place: &Place, within: f64, of: impl Fn(usize) -> (u32, [f64; 3], [f64; 3])) -> Option<usize> {
+fn nearest(
+    grid: &Grid,
+    candidate: &Candidate,
+    within: f64,
+    of: impl Fn(usize) -> (u32, [f64; 3], [f64; 3]),
+) -> Option<usize> {
     let mut best: Option<(f64, usize)> = None;
     // What is filed reaches out itself.
-    grid.near(place.position, (within - grid.smallest()).max(0.0), 0.0, |at| {
+    grid.near(candidate.position, (within - grid.smallest()).max(0.0), 0.0, |at| {
         let (solid, normal, position) = of(at);
-        let away = distance2(position, place.position);
-        let is_near = away <= within * within && place.is_beside(solid, normal);
+        let away = distance2(position, candidate.position);
+        let is_near = away <= within * within && candidate.is_beside(solid, normal);
         if is_near && best.is_none_or(|best| (away, at) < best) {
             best = Some((away, at));
         }

@@ -20,18 +20,18 @@ fn excess(particle: Particle) -> f32 {
 }
 
 // Sum of the weights of the boundary particles near, and with the part of the heat that each takes. Twin of `Exchange::shares`.
-fn weights_near(place: vec3f) -> vec2f {
+fn weights_near(position: vec3f) -> vec2f {
     var sums = vec2f(0.0);
-    let low = cell_index(place - parameters.h);
-    let high = cell_index(place + parameters.h);
+    let low = cell_index(position - parameters.h);
+    let high = cell_index(position + parameters.h);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
-            let across = columns_round(place, y, z);
+            let across = columns_round(position, y, z);
             let row = row_of(y, z);
             let end = site_start[row + across.y + 1u];
             for (var k = site_start[row + across.x]; k < end; k++) {
                 if (sites[k].flags & (BOUNDARY | GHOST_PARTICLE_BEYOND)) == BOUNDARY {
-                    let away = (place - sites[k].place) * parameters.per_h;
+                    let away = (position - sites[k].position) * parameters.per_h;
                     let weight = sites[k].volume * value_shape(dot(away, away));
                     sums += vec2f(weight, weight * sites[k].part);
                 }
@@ -49,7 +49,7 @@ fn saturate(particle: ptr<function, Particle>) -> f32 {
     }
     let warming = parameters.latent_heat / parameters.heat_capacity * excess;
     if excess > 0.0 {
-        let weights = weights_near((*particle).place);
+        let weights = weights_near((*particle).position);
         if weights.x > 0.0 {
             (*particle).deposit = parameters.mass * excess / weights.x;
             (*particle).vapour = add((*particle).vapour, -excess);

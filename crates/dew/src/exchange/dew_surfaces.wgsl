@@ -6,10 +6,10 @@
 // Heat by difference of temperature, W, condensation and evaporation, kg/s, and the sum of conductances, W/K.
 fn from_air(site: Site, surface: Surface) -> vec4f {
     var sums = FourSums(vec4f(0.0), vec4f(0.0));
-    let mirrors = mirrors_round(site.place);
+    let mirrors = mirrors_round(site.position);
     for (var k = 0u; k < mirrors; k++) {
-        let mirror = mirror(k, site.place);
-        let truth = behind(mirror, site.place);
+        let mirror = mirror(k, site.position);
+        let truth = behind(mirror, site.position);
         let low = cell_index(truth - parameters.h);
         let high = cell_index(truth + parameters.h);
         for (var z = low.z; z <= high.z; z++) {
@@ -18,7 +18,7 @@ fn from_air(site: Site, surface: Surface) -> vec4f {
                 let row = row_of(y, z);
                 let end = start[row + across.y + 1u];
                 for (var j = start[row + across.x]; j < end; j++) {
-                    let away = shown(mirror, columns[j].place_and_pressure.xyz) - site.place;
+                    let away = shown(mirror, columns[j].position_and_pressure.xyz) - site.position;
                     let q = length(away) * parameters.per_h;
                     if q >= 1.0 {
                         continue;

@@ -6,10 +6,10 @@
 // Water that air particles lay on a boundary particle, kg.
 fn deposited(site: Site) -> f32 {
     var water = 0.0;
-    let mirrors = mirrors_round(site.place);
+    let mirrors = mirrors_round(site.position);
     for (var k = 0u; k < mirrors; k++) {
-        let mirror = mirror(k, site.place);
-        let truth = behind(mirror, site.place);
+        let mirror = mirror(k, site.position);
+        let truth = behind(mirror, site.position);
         let low = cell_index(truth - parameters.h);
         let high = cell_index(truth + parameters.h);
         for (var z = low.z; z <= high.z; z++) {
@@ -20,7 +20,7 @@ fn deposited(site: Site) -> f32 {
                 for (var j = start[row + across.x]; j < end; j++) {
                     let deposit = particles[j].acceleration_and_deposit.w;
                     if deposit > 0.0 {
-                        let away = (shown(mirror, spots[j].xyz) - site.place) * parameters.per_h;
+                        let away = (shown(mirror, spots[j].xyz) - site.position) * parameters.per_h;
                         water += deposit * site.volume * value_shape(dot(away, away));
                     }
                 }

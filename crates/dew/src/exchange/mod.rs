@@ -3,10 +3,10 @@
 //! Both sides of a pair find the same flux from the same numbers, so nothing is made or lost but by rounding.
 
 use crate::air::{Arrangement, Column, Particle, Properties, Scale};
-use crate::contact::{Contact, Near, Pair};
 use crate::humid_air::HumidAir;
 use crate::normalisation;
 use crate::settings::{Condensation, Settings};
+use crate::solids::contact::{Contact, Near, Pair};
 use crate::solids::{Site, Solids};
 use corpuscle_sph::kernel::SmoothingKernel;
 use rayon::prelude::*;
@@ -103,10 +103,10 @@ pub fn saturation(temperature: f64, air: &Properties) -> f64 {
 }
 
 impl Exchange<'_> {
-    /// Between the site and the air at a place, `r` apart.
-    fn flux(&self, site: usize, place: usize, r: f64) -> Flux {
+    /// Between the site and the air at an index, `r` apart.
+    fn flux(&self, site: usize, index: usize, r: f64) -> Flux {
         let particle = self.contact.sites[site].particle as usize;
-        let air = &self.columns[place];
+        let air = &self.columns[index];
         let volume = self.contact.volumes[site];
         let factor = normalisation::factor(&air.tensor, self.contact.offset(site, air.position));
         let weight = volume * self.scale.kernel.laplacian(r) * factor / self.scale.moment;
@@ -162,12 +162,12 @@ impl Exchange<'_> {
     }
 
     fn to_one(&self, near: &Near, share_of: &[f64]) -> ToAir {
-        let place = self.arrangement.place_of[near.particle as usize] as usize;
+        let index = self.arrangement.index_of[near.particle as usize] as usize;
         let mass = self.air.density * self.scale.volume;
         let capacity = mass * self.air.heat_capacity;
         let mut sum = ToAir::default();
         for pair in self.contact.of_air(near) {
-            let flux = self.flux(pair.other as usize, place, pair.r);
+            let flux = self.flux(pair.other as usize, index, pair.r);
             let site = &self.contact.sites[pair.other as usize];
             let water = limited(flux.water, share_of[site.particle as usize]);
             let released = (1.0 - flux.to_solid) * self.latent_heat * water;

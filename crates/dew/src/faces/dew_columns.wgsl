@@ -36,12 +36,12 @@ fn first_column(number: u32) -> u32 {
     return first;
 }
 
-// The column of a side that a place is in. Twin of `OpenSide::column`.
-fn column_of(number: u32, place: vec3f) -> u32 {
+// The column of a side that a position is in. Twin of `OpenSide::column`.
+fn column_of(number: u32, position: vec3f) -> u32 {
     let axis = number / 2u;
     let a = (axis + 1u) % 3u;
     let b = (axis + 2u) % 3u;
-    let at = max((place - parameters.low) / parameters.apart, vec3f(0.0));
+    let at = max((position - parameters.low) / parameters.apart, vec3f(0.0));
     let along = columns_along(number);
     return first_column(number) + min(u32(at[a]), along.x - 1u) + along.x * min(u32(at[b]), along.y - 1u);
 }

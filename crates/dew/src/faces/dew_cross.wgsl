@@ -20,26 +20,26 @@ fn combine(a: Crossed, b: Crossed) -> Crossed {
     return Crossed(a.came + b.came, a.went + b.went);
 }
 
-fn depth_beyond(place: vec3f, number: u32) -> f32 {
+fn depth_beyond(position: vec3f, number: u32) -> f32 {
     let axis = number / 2u;
-    return select(place[axis] - parameters.high[axis], parameters.low[axis] - place[axis], number % 2u == 0u);
+    return select(position[axis] - parameters.high[axis], parameters.low[axis] - position[axis], number % 2u == 0u);
 }
 
 struct Beyond {
-    // The face that air passes beyond which a place lies, an open one before others.
+    // The face that air passes beyond which a position lies, an open one before others.
     number: u32,
     // Whether it lies beyond two faces or more, one of them open.
     is_edge: bool,
 }
 
 // Twin of `Room::beyond` and `Room::is_beyond_edge`.
-fn beyond(place: vec3f) -> Beyond {
+fn beyond(position: vec3f) -> Beyond {
     var passed = NO_FACE;
     var open = NO_FACE;
     var count = 0u;
     for (var number = 0u; number < NO_FACE; number++) {
         let axis = number / 2u;
-        let is_beyond = select(place[axis] >= parameters.high[axis], place[axis] < parameters.low[axis], number % 2u == 0u);
+        let is_beyond = select(position[axis] >= parameters.high[axis], position[axis] < parameters.low[axis], number % 2u == 0u);
         if !is_beyond {
             continue;
         }
@@ -69,9 +69,9 @@ fn booked(particle: Particle) -> vec4f {
 fn hold_at_inlets(particle: ptr<function, Particle>) {
     for (var number = 0u; number < NO_FACE; number++) {
         let axis = number / 2u;
-        let at = (*particle).place[axis];
+        let at = (*particle).position[axis];
         if face(number) == INLET && select(at >= parameters.high[axis], at < parameters.low[axis], number % 2u == 0u) {
-            (*particle).place[axis] = mirrored_inside(at, number);
+            (*particle).position[axis] = mirrored_inside(at, number);
             (*particle).velocity[axis] = parameters.inlets[number].velocity[axis];
         }
     }
@@ -83,7 +83,7 @@ fn cross_over(particle: ptr<function, Particle>) -> bool {
     if role == INSIDE {
         hold_at_inlets(particle);
     }
-    let beyond = beyond((*particle).place);
+    let beyond = beyond((*particle).position);
     let number = beyond.number;
     let held = booked(*particle);
     if (role == INSIDE || role == IDLE) && number != NO_FACE {
@@ -107,17 +107,17 @@ fn cross_over(particle: ptr<function, Particle>) -> bool {
         crossed.came = held;
     }
     let now = (*particle).role & ROLE_MASK;
-    return (now == LEAVING || now == OUTSIDE) && !(depth_beyond((*particle).place, (*particle).role >> FACE_BITS) < BEYOND * parameters.h);
+    return (now == LEAVING || now == OUTSIDE) && !(depth_beyond((*particle).position, (*particle).role >> FACE_BITS) < BEYOND * parameters.h);
 }
 
 // What a particle in the room before an open side adds to its column, and how far beyond one outside is.
 fn mark_columns(particle: Particle) {
     if (particle.role & ROLE_MASK) == OUTSIDE {
         let number = particle.role >> FACE_BITS;
-        atomicMax(&columns_before[column_of(number, particle.place)].outermost, bits_of_depth(depth_beyond(particle.place, number)));
+        atomicMax(&columns_before[column_of(number, particle.position)].outermost, bits_of_depth(depth_beyond(particle.position, number)));
     }
     for (var number = 0u; number < NO_FACE; number++) {
-        if particle.role != INSIDE || face(number) != OPEN || depth_beyond(particle.place, number) <= -parameters.h {
+        if particle.role != INSIDE || face(number) != OPEN || depth_beyond(particle.position, number) <= -parameters.h {
             continue;
         }
         // Towards the pressure of the air outside: see `move_outside`.
@@ -126,7 +126,7 @@ fn mark_columns(particle: Particle) {
         let inward = max(-outward * along, 0.0);
         let sound = parameters.sound;
         let rise = sound * (particle.density / parameters.rest_density - 1.0) + 0.5 * inward * inward / sound;
-        let column = column_of(number, particle.place);
+        let column = column_of(number, particle.position);
         atomicAdd(&columns_before[column].velocity, units_of(along + outward * rise));
         atomicAdd(&columns_before[column].count, 1u);
     }
@@ -167,11 +167,11 @@ fn main(
             mark_columns(particle);
             let is_turn = is_set(FINDS_LOW_UTILITY) && (status.turn + status.steps) % TURN == 0u;
             if !(is_turn && update_utility(&particle)) {
-                cell = cell_at(particle.place);
+                cell = cell_at(particle.position);
             }
         }
         particles[i] = packed(particle);
-        places[i] = vec2u(cell, atomicAdd(&counts[cell], 1u));
+        cell_slots[i] = vec2u(cell, atomicAdd(&counts[cell], 1u));
         keys[i] = particle.id;
     }
     let all = reduce_group(thread, crossed);

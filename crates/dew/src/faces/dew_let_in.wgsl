@@ -30,9 +30,9 @@ fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
     let all = columns * parameters.counts[b];
     for (var k = thread; k < all; k += GROUP) {
         var particle = Particle();
-        particle.place[axis] = select(parameters.high[axis] + behind, parameters.low[axis] - behind, number % 2u == 0u);
-        particle.place[a] = parameters.low[a] + (f32(k % columns) + 0.5) * parameters.apart[a];
-        particle.place[b] = parameters.low[b] + (f32(k / columns) + 0.5) * parameters.apart[b];
+        particle.position[axis] = select(parameters.high[axis] + behind, parameters.low[axis] - behind, number % 2u == 0u);
+        particle.position[a] = parameters.low[a] + (f32(k % columns) + 0.5) * parameters.apart[a];
+        particle.position[b] = parameters.low[b] + (f32(k / columns) + 0.5) * parameters.apart[b];
         particle.velocity = inlet.velocity;
         particle.temperature = vec2f(inlet.temperature, 0.0);
         particle.vapour = vec2f(inlet.vapour, 0.0);

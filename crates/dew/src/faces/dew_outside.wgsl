@@ -42,22 +42,22 @@ fn missing(number: u32, column: u32, is_going: bool) -> u32 {
     return count;
 }
 
-// Adds the ambient air, at the place `at` in memory.
+// Adds the ambient air, at the index `at` in memory.
 fn add_particle(number: u32, column: u32, depth: f32, at: u32, id: u32) {
     let axis = number / 2u;
     let a = (axis + 1u) % 3u;
     let b = (axis + 2u) % 3u;
     let along = columns_along(number);
     var particle = Particle();
-    particle.place[axis] = select(parameters.high[axis] + depth, parameters.low[axis] - depth, number % 2u == 0u);
-    particle.place[a] = parameters.low[a] + (f32(column % along.x) + 0.5) * parameters.apart[a];
-    particle.place[b] = parameters.low[b] + (f32(column / along.x) + 0.5) * parameters.apart[b];
+    particle.position[axis] = select(parameters.high[axis] + depth, parameters.low[axis] - depth, number % 2u == 0u);
+    particle.position[a] = parameters.low[a] + (f32(column % along.x) + 0.5) * parameters.apart[a];
+    particle.position[b] = parameters.low[b] + (f32(column / along.x) + 0.5) * parameters.apart[b];
     particle.id = id;
     particle.role = OUTSIDE | (number << FACE_BITS);
     if at < arrayLength(&particles) {
-        let cell = cell_at(particle.place);
+        let cell = cell_at(particle.position);
         particles[at] = packed(particle);
-        places[at] = vec2u(cell, atomicAdd(&counts[cell], 1u));
+        cell_slots[at] = vec2u(cell, atomicAdd(&counts[cell], 1u));
         keys[at] = id;
     }
 }
@@ -95,7 +95,7 @@ fn add_outside(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -
 @compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
     let old = status.particles;
-    // Numbers go on from the last, so that a particle's is this and its place in memory.
+    // Numbers go on from the last, so that a particle's is this and its index in memory.
     let id = status.next_id - old;
     let is_going = status.halted == GOING;
     var count = old;

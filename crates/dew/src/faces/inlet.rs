@@ -1,11 +1,11 @@
 //! Air that comes in by inlets, layer by layer.
 
-use super::{before_inlet, placed};
+use super::{before_inlet, placed, slowest};
 use crate::air::Particle;
-use crate::dew::Dew;
+use crate::inventory::Inventory;
 use crate::room::{Face, Inflow};
 
-impl Dew {
+impl Inventory<'_> {
     /// Lets air come in by all inlets.
     pub(super) fn let_in(&mut self, step: f64) {
         for axis in 0..3 {
@@ -28,15 +28,15 @@ impl Dew {
             let others = [(axis + 1) % 3, (axis + 2) % 3];
             for b in 0..counts[others[1]] {
                 for a in 0..counts[others[0]] {
-                    let mut place = [0.0; 3];
-                    place[axis] = [self.room.low[axis] - behind, self.room.high[axis] + behind][side];
+                    let mut position = [0.0; 3];
+                    position[axis] = [self.room.low[axis] - behind, self.room.high[axis] + behind][side];
                     for (other, index) in others.into_iter().zip([a, b]) {
-                        place[other] = self.room.low[other] + (index as f64 + 0.5) * apart[other];
+                        position[other] = self.room.low[other] + (index as f64 + 0.5) * apart[other];
                     }
-                    let particle = Particle::new(self.state.next_id, place, inflow.temperature, inflow.vapour);
+                    let particle = Particle::new(self.state.next_id, position, inflow.temperature, inflow.vapour);
                     self.state.next_id += 1;
-                    if self.owns(place) {
-                        self.state.air.push(placed(particle, &self.room, self.slowest()));
+                    if self.owns(position) {
+                        self.state.air.push(placed(particle, self.room, slowest(self.air)));
                     }
                 }
             }

@@ -7,14 +7,12 @@ pub use open::OpenSide;
 #[cfg(feature = "gpu")]
 pub(crate) use open::deepest as deepest_outside;
 
-use crate::air::{Particle, Role, Scale};
-use crate::dew::Dew;
+use crate::air::{Particle, Properties, Role, Scale};
+use crate::constants::{BEYOND, OUTLET_LAYER};
+use crate::inventory::Inventory;
 use crate::room::{Face, Mirrors, Room};
 use crate::solids::{Body, Searched, Solids, Surface};
 use corpuscle_model::ExactSum;
-
-/// Distance beyond an open face at which air is removed, in smoothing lengths: particles inside have neighbours in the first, and these in the second.
-pub(crate) const BEYOND: f64 = 2.0;
 
 /// How far before an inlet a new layer of particles stands, m; they are `apart` m apart, and `h` is the smoothing length.
 pub(crate) fn before_inlet(h: f64, apart: f64) -> f64 {
@@ -53,17 +51,17 @@ impl Free {
         Self { solids, surfaces, room: *room, nearest, clearance: CLEARANCE * scale.spacing }
     }
 
-    /// Whether air can start at a place.
-    pub(crate) fn holds(&self, place: [f64; 3]) -> bool {
-        let away = |(surface, mirrors): &(Surface, Mirrors)| surface(self.room.mirrored_back(place, mirrors));
-        self.solids.near(place, self.nearest).next().is_none()
+    /// Whether air can start at a position.
+    pub(crate) fn holds(&self, position: [f64; 3]) -> bool {
+        let away = |(surface, mirrors): &(Surface, Mirrors)| surface(self.room.mirrored_back(position, mirrors));
+        self.solids.near(position, self.nearest).next().is_none()
             && self.surfaces.iter().all(|surface| away(surface) > self.clearance)
     }
 }
 
-impl Dew {
-    /// Fills the room, and what lies before inlets and beyond outlets, with air on a lattice.
-    pub(crate) fn fill(&mut self, bodies: &[Body], start: impl Fn([f64; 3]) -> [f64; 2]) {
+impl Inventory<'_> {
+    /// Fills the room, and what lies before inlets and beyond outlets, with air on a lattice. Returns the columns outside open sides.
+    pub(crate) fn fill(&mut self, bodies: &[Body], start: impl Fn([f64; 3]) -> [f64; 2]) -> Vec<OpenSide> {
         let spacing = self.scale.spacing;
         let counts = self.room.counts(spacing).map(|count| count as i64);
         let apart = self.room.apart(spacing);
@@ -72,37 +70,37 @@ impl Dew {
             let more = [0, 1].map(|side| if self.room.faces[axis][side].is_passed() { beyond[axis] } else { 0 });
             -more[0]..counts[axis] + more[1]
         });
-        let free = Free::new(&self.solids, &self.room, &self.scale, bodies.iter().map(|body| body.surface.clone()));
-        let is_free = |place: [f64; 3]| free.holds(place);
+        let free = Free::new(self.solids, self.room, self.scale, bodies.iter().map(|body| body.surface.clone()));
+        let is_free = |position: [f64; 3]| free.holds(position);
         let mut next_id = self.state.next_id;
         for z in range[2].clone() {
             for y in range[1].clone() {
                 for x in range[0].clone() {
                     let index = [x, y, z];
-                    let place = [0, 1, 2].map(|axis| self.room.low[axis] + (index[axis] as f64 + 0.5) * apart[axis]);
+                    let position = [0, 1, 2].map(|axis| self.room.low[axis] + (index[axis] as f64 + 0.5) * apart[axis]);
                     // By the position on the lattice, so that no process has to know what another leaves out.
                     let id = next_id;
                     next_id += 1;
-                    if !self.owns(place) || !self.room.is_filled(place) || !is_free(place) {
+                    if !self.owns(position) || !self.room.is_filled(position) || !is_free(position) {
                         continue;
                     }
-                    let [temperature, vapour] = start(place);
-                    let particle = Particle::new(id, place, temperature, vapour);
-                    self.state.air.push(placed(particle, &self.room, self.slowest()));
+                    let [temperature, vapour] = start(position);
+                    let particle = Particle::new(id, position, temperature, vapour);
+                    self.state.air.push(placed(particle, self.room, slowest(self.air)));
                 }
             }
         }
         self.state.next_id = next_id;
-        self.open_sides = OpenSide::all(&self.room, &self.scale, is_free);
+        OpenSide::all(self.room, self.scale, is_free)
     }
 
     /// Air crosses faces that let it pass, is let in, and is let go.
-    pub(crate) fn cross_faces(&mut self, step: f64) {
+    pub(crate) fn cross_faces(&mut self, step: f64, open_sides: &mut [OpenSide]) {
         if !self.room.faces.iter().flatten().any(Face::is_passed) {
             return;
         }
         let far = BEYOND * self.scale.h();
-        let before = [0, 1, 2].map(|axis| [0, 1].map(|side| self.before_outlet(axis, side)));
+        let before = self.before_outlets();
         self.update_outlet_pressure(step, &before);
         let mut air = std::mem::take(&mut self.state.air);
         air.retain_mut(|particle| {
@@ -117,7 +115,7 @@ impl Dew {
         });
         self.state.air = air;
         self.let_in(step);
-        self.move_outside();
+        self.move_outside(open_sides);
     }
 
     /// Sets a particle's role by its position, and books inflow and outflow; beyond outlets it goes on, as much faster as the air before them.
@@ -136,7 +134,7 @@ impl Dew {
                 } else if self.room.faces[axis][side] == Face::Open {
                     particle.role = Role::Outside(axis as u8, side as u8);
                 } else {
-                    particle.leave(axis, side, particle.velocity[axis], self.slowest());
+                    particle.leave(axis, side, particle.velocity[axis], slowest(self.air));
                     // Kept by each particle for itself, what evened it out last would go on for ever, and stir the air beyond.
                     particle.spreading = [0.0; 3];
                     particle.spreading[axis] = before[axis][side].spreading;
@@ -145,7 +143,7 @@ impl Dew {
             (Role::Leaving(axis, side), _) => {
                 let (axis, side) = (usize::from(axis), usize::from(side));
                 let along = particle.velocity[axis] + step * before[axis][side].acceleration;
-                particle.leave(axis, side, along, self.slowest());
+                particle.leave(axis, side, along, slowest(self.air));
             }
             (Role::Coming(..) | Role::Outside(..), None) => {
                 particle.role = Role::Inside;
@@ -155,20 +153,20 @@ impl Dew {
         }
     }
 
-    /// Least speed of air beyond an outlet, m/s: it must not block the outflow.
-    pub(crate) fn slowest(&self) -> f64 {
-        SLOWEST * self.air.sound_speed
+    /// What the air before each outlet does.
+    pub(crate) fn before_outlets(&self) -> [[BeforeOutlet; 2]; 3] {
+        [0, 1, 2].map(|axis| [0, 1].map(|side| self.before_outlet(axis, side)))
     }
 
     /// The air before an outlet, with which the air beyond goes on: each particle keeps what it is faster or slower by, and a flow that swells or ebbs
     /// meets no plug.
-    pub(crate) fn before_outlet(&self, axis: usize, side: usize) -> BeforeOutlet {
+    fn before_outlet(&self, axis: usize, side: usize) -> BeforeOutlet {
         if self.room.faces[axis][side] != Face::Outlet {
             return BeforeOutlet::default();
         }
         let face = [self.room.low, self.room.high][side][axis];
         let (mut counts, mut sums) = ([0; 2], [ExactSum::default(); 3]);
-        for particle in self.inside() {
+        for particle in self.state.inside() {
             let distance = (particle.position[axis] - face).abs();
             if distance < self.scale.h() {
                 sums[0].add(particle.acceleration[axis]);
@@ -199,18 +197,7 @@ impl Dew {
             }
         }
     }
-
-    pub(crate) fn book(&mut self, particle: &Particle, sign: f64) {
-        let water = self.particle_mass() * (particle.vapour + particle.fog);
-        let energy = self.energy_of(particle);
-        self.state.water.book(sign * water);
-        self.state.energy.book(sign * energy);
-    }
 }
-
-/// Thickness of the layer before an outlet whose mean particle shift is applied to the air beyond, in smoothing lengths: less than one layer of particles,
-/// so that a layer keeps the shift that moves it as a whole; without it sound between an inlet and the outlet grows.
-pub(crate) const OUTLET_LAYER: f64 = 0.2;
 
 /// What air before an outlet does along the outlet's axis, in the mean.
 #[derive(Debug, Clone, Copy, Default)]
@@ -225,6 +212,11 @@ pub(crate) struct BeforeOutlet {
 
 /// Least speed of air beyond an outlet, over the speed of sound.
 const SLOWEST: f64 = 0.01;
+
+/// Least speed of air beyond an outlet, m/s: it must not block the outflow.
+pub(crate) fn slowest(air: &Properties) -> f64 {
+    SLOWEST * air.sound_speed
+}
 
 /// Gives a new particle the role and velocity of where it stands.
 fn placed(mut particle: Particle, room: &Room, slowest: f64) -> Particle {

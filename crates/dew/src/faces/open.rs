@@ -5,9 +5,9 @@
 //! Applied Mechanics and Engineering 342, 2018, 604), with columns for its ghost nodes. Air that goes out meets the pressure of
 //! the air outside, that of rest; air that comes in has come from rest, and its pressure is lower by rho u^2 / 2 (Bernoulli).
 
-use super::BEYOND;
 use crate::air::{Particle, Role, Scale};
-use crate::dew::Dew;
+use crate::constants::BEYOND;
+use crate::inventory::Inventory;
 use crate::room::{Face, Room};
 use corpuscle_model::{ROUNDERS, ReproducibleSum};
 use corpuscle_processes::Processes;
@@ -64,7 +64,7 @@ impl OpenSide {
             outermost: vec![0.0; columns],
         };
         let last = new.deepest(scale);
-        new.free = (0..columns).map(|column| is_free(new.place(room, column, last))).collect();
+        new.free = (0..columns).map(|column| is_free(new.position(room, column, last))).collect();
         new
     }
 
@@ -79,24 +79,24 @@ impl OpenSide {
         &self.free
     }
 
-    /// The place in the midst of a column so far beyond the side, m.
-    fn place(&self, room: &Room, column: usize, depth: f64) -> [f64; 3] {
+    /// The position in the midst of a column so far beyond the side, m.
+    fn position(&self, room: &Room, column: usize, depth: f64) -> [f64; 3] {
         let index = [column % self.counts[0], column / self.counts[0]];
-        let mut place = [0.0; 3];
-        place[self.axis] = [room.low[self.axis] - depth, room.high[self.axis] + depth][self.side];
+        let mut position = [0.0; 3];
+        position[self.axis] = [room.low[self.axis] - depth, room.high[self.axis] + depth][self.side];
         for i in 0..2 {
             let other = self.along[i];
-            place[other] = room.low[other] + (index[i] as f64 + 0.5) * self.apart[other];
+            position[other] = room.low[other] + (index[i] as f64 + 0.5) * self.apart[other];
         }
-        place
+        position
     }
 
-    /// The column that a place is in.
-    fn column(&self, room: &Room, place: [f64; 3]) -> usize {
+    /// The column that a position is in.
+    fn column(&self, room: &Room, position: [f64; 3]) -> usize {
         let index = [0, 1].map(|i| {
             let other = self.along[i];
             // A negative number becomes 0.
-            (((place[other] - room.low[other]) / self.apart[other]) as usize).min(self.counts[i] - 1)
+            (((position[other] - room.low[other]) / self.apart[other]) as usize).min(self.counts[i] - 1)
         });
         index[0] + self.counts[0] * index[1]
     }
@@ -167,11 +167,10 @@ impl OpenSide {
     }
 }
 
-impl Dew {
+impl Inventory<'_> {
     /// The air outside open sides takes the velocity of the air before them, and where it has moved in there is more of it.
-    pub(crate) fn move_outside(&mut self) {
-        let mut sides = std::mem::take(&mut self.open_sides);
-        for open in &mut sides {
+    pub(crate) fn move_outside(&mut self, sides: &mut [OpenSide]) {
+        for open in sides {
             let (axis, side) = (open.axis, open.side);
             let rest = self.rest_density;
             let sound = self.air.sound_speed;
@@ -179,33 +178,32 @@ impl Dew {
                 let inward = [1.0, -1.0][side] * particle.velocity[axis];
                 sound * (particle.density / rest - 1.0) + 0.5 * inward.max(0.0).powi(2) / sound
             };
-            open.sample_velocities(&self.processes, &self.room, &self.state.air, self.scale.h(), rise);
+            open.sample_velocities(self.processes, self.room, &self.state.air, self.scale.h(), rise);
             for particle in &mut self.state.air {
                 if particle.role == Role::Outside(open.axis as u8, open.side as u8) {
                     particle.velocity = [0.0; 3];
-                    particle.velocity[open.axis] = open.velocity[open.column(&self.room, particle.position)];
+                    particle.velocity[open.axis] = open.velocity[open.column(self.room, particle.position)];
                     (particle.acceleration, particle.spreading) = ([0.0; 3], [0.0; 3]);
                 }
             }
             self.add_outside(open);
         }
-        self.open_sides = sides;
     }
 
     /// Adds ambient air at the far end of columns that have moved in.
     fn add_outside(&mut self, open: &OpenSide) {
-        let (deepest, apart) = (open.deepest(&self.scale), open.apart[open.axis]);
+        let (deepest, apart) = (open.deepest(self.scale), open.apart[open.axis]);
         for column in (0..open.velocity.len()).filter(|&column| open.free[column]) {
             let mut depth = open.outermost[column].max(-0.5 * apart) + apart;
             while depth <= deepest {
-                let place = open.place(&self.room, column, depth);
+                let position = open.position(self.room, column, depth);
                 let Self { settings, state, .. } = self;
                 let mut particle =
-                    Particle::new(state.next_id, place, settings.ambient_temperature, settings.ambient_vapour);
+                    Particle::new(state.next_id, position, settings.ambient_temperature, settings.ambient_vapour);
                 particle.role = Role::Outside(open.axis as u8, open.side as u8);
                 particle.velocity[open.axis] = open.velocity[column];
                 state.next_id += 1;
-                if self.owns(place) {
+                if self.owns(position) {
                     self.state.air.push(particle);
                 }
                 depth += apart;

@@ -11,12 +11,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         if (particle.role & ROLE_MASK) == OUTSIDE {
             let number = particle.role >> FACE_BITS;
             particle.velocity = vec3f(0.0);
-            particle.velocity[number / 2u] = outside_columns[column_of(number, particle.place)].velocity;
+            particle.velocity[number / 2u] = outside_columns[column_of(number, particle.position)].velocity;
             particle.acceleration = vec3f(0.0);
             particle.spreading = vec3f(0.0);
         }
         ordered[i] = packed(particle);
-        spots[i] = vec4f(particle.place, 0.0);
+        spots[i] = vec4f(particle.position, 0.0);
     }
     if i == 0u {
         status.particles = staying;

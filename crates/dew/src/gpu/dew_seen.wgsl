@@ -6,7 +6,7 @@ fn as_seen(particle: Particle) -> DeviceParticle {
     if particle.role != INSIDE {
         return air;
     }
-    air.place = particle.place + seen_at.since * particle.velocity;
+    air.position = particle.position + seen_at.since * particle.velocity;
     air.spacing = parameters.spacing;
     air.velocity = particle.velocity;
     air.volume = parameters.spacing * parameters.spacing * parameters.spacing;

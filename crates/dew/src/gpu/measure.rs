@@ -1,9 +1,10 @@
 //! Values of gauges, without download of the air.
 
-use super::shared::{self, MEASURING_GROUPS};
-use super::{GpuSolver, Origin};
-use crate::dew::State;
+use super::GpuSolver;
 use crate::measures::Totals;
+use crate::origin::Origin;
+use crate::shared::{self, MEASURING_GROUPS};
+use crate::state::State;
 use corpuscle_gpu::{GpuError, read, submit};
 
 impl GpuSolver {

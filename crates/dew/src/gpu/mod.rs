@@ -6,29 +6,30 @@
 //!
 //! What single precision is spent on: see `shared.rs`.
 
+mod inputs;
 mod measure;
 mod numbers;
-pub(crate) mod origin;
 mod seen;
-pub(crate) mod shared;
 mod tasks;
 
+pub(crate) use inputs::GpuInputs;
 #[cfg(test)]
 pub(crate) use numbers::FINE_CELLS_MIN_PARTICLES;
-pub(crate) use shared::MOST_FANS;
+#[cfg(test)]
+pub(crate) use tasks::pieces;
 
-use crate::dew::{Dew, State};
 use crate::faces::OpenSide;
+use crate::origin::Origin;
+use crate::shared::{self, OutsideColumn, Parameters, Status, TURN};
 use crate::solids::sources::upload::GpuSources;
 use crate::solids::upload::GpuSolids;
+use crate::state::State;
 use crate::utility::upload::distance_field;
 use bytemuck::Zeroable;
 use corpuscle_gpu::{
     BATCH_START, Batches, Gpu, GpuError, Halt, SeenParticles, from_halves, from_pair, read, to_pair, wgpu,
 };
 use corpuscle_sph::kernel::Kernel;
-use origin::Origin;
-use shared::{OutsideColumn, Parameters, Status, TURN};
 use tasks::Tasks;
 
 /// Humid air on a GPU.
@@ -113,21 +114,23 @@ fn outside_column(&is_free: &bool) -> OutsideColumn {
 
 impl GpuSolver {
     /// Room for `room` particles of air.
-    pub fn new(gpu: Gpu, room: usize, dew: &Dew) -> Result<Self, GpuError> {
+    pub fn new(gpu: Gpu, room: usize, inputs: &GpuInputs) -> Result<Self, GpuError> {
         let origin = Origin {
-            room: dew.room,
-            temperature: dew.settings.ambient_temperature,
-            vapour: dew.settings.ambient_vapour,
+            room: *inputs.room,
+            temperature: inputs.settings.ambient_temperature,
+            vapour: inputs.settings.ambient_vapour,
         };
-        let mut parameters = Parameters::of(dew, origin, room);
-        let field = distance_field(&mut parameters, dew, origin);
+        let mut parameters = Parameters::of(inputs, origin, room);
+        let field =
+            distance_field(&mut parameters, inputs.settings, inputs.room, inputs.scale, inputs.surfaces, origin);
         let mut rows = Vec::new();
-        let solids = GpuSolids::new(&gpu, dew, origin, &parameters, &mut rows)?;
-        let outside: Vec<OutsideColumn> = dew.open_sides.iter().flat_map(OpenSide::free).map(outside_column).collect();
-        let sources = GpuSources::new(dew, origin, &mut rows);
-        let fans = numbers::gpu_fans(dew, origin);
+        let solids = GpuSolids::new(&gpu, &inputs.solids, origin, &parameters, &mut rows)?;
+        let outside: Vec<OutsideColumn> =
+            inputs.open_sides.iter().flat_map(OpenSide::free).map(outside_column).collect();
+        let sources = GpuSources::new(inputs.sources, origin, &mut rows);
+        let fans = numbers::gpu_fans(inputs, origin);
         let (bodies, of_solids) = (solids.bodies.clone(), solids.count);
-        let kernel = Kernel::<3>::device_piece(dew.settings.kernel);
+        let kernel = Kernel::<3>::device_piece(inputs.settings.kernel);
         let tasks = Tasks::new(
             &gpu,
             &kernel,

@@ -1,8 +1,8 @@
 //! The air as particles for drawing on the same device.
 
 use super::GpuSolver;
-use super::shared::{Memory, Shown};
 use super::tasks::PIECES;
+use crate::shared::{Memory, Shown};
 use corpuscle_gpu::{DeviceParticles, GpuError, Kernel, Seen};
 
 impl GpuSolver {

@@ -1,6 +1,6 @@
 //! The passes of a step, each with what it works on.
 
-use super::shared::{
+use crate::shared::{
     BeforeColumn, BeforeOutlet, Body, Fan, IS_PASSED, MEASURING_GROUPS, MOST_FANS, Measured, Memory, OutsideColumn,
     Packed, PackedColumn, Parameters, Partial, Row, Shown, Solid, Status, Surface, Water,
 };
@@ -28,7 +28,7 @@ pub(super) const PIECES: &[(&str, &str)] = &[
 ];
 
 /// These pieces and the smoothing kernel.
-pub(super) fn pieces(kernel: &str) -> Vec<(&str, &str)> {
+pub(crate) fn pieces(kernel: &str) -> Vec<(&str, &str)> {
     PIECES.iter().copied().chain([(KERNEL_PIECE, kernel)]).collect()
 }
 
@@ -86,14 +86,14 @@ impl Tasks {
             status,
             particles: storage::<Packed>(gpu, "air", count)?,
             ordered: storage::<Packed>(gpu, "air in order", count)?,
-            spots: storage::<[f32; 4]>(gpu, "places of particles", count)?,
+            spots: storage::<[f32; 4]>(gpu, "positions of particles", count)?,
             columns: storage::<PackedColumn>(gpu, "columns of air", count)?,
             partials: storage::<Partial>(gpu, "sums of groups", groups)?,
             before: storage::<[BeforeOutlet; 6]>(gpu, "sums before faces", groups)?,
             columns_before: storage::<BeforeColumn>(gpu, "sums before columns", outside.len())?,
             outside_columns: filled(gpu, "columns outside", outside)?,
             counts: sort.counts.clone(),
-            places: sort.places.clone(),
+            cell_slots: sort.cell_slots.clone(),
             keys,
             start: sort.start.clone(),
             order: sort.order.clone(),

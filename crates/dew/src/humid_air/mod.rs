@@ -147,6 +147,14 @@ impl HumidAir {
     }
 }
 
+/// How much lighter vapour makes air: the coefficient of its mass fraction in the virtual temperature (Stull 1988, equation 1.5.1).
+pub(crate) const VAPOUR_LIGHTNESS: f64 = 0.608;
+
+/// T (1 + 0.608 Y), K: temperature at which dry air is as light.
+pub(crate) fn virtual_temperature(temperature: f64, vapour: f64) -> f64 {
+    temperature * (1.0 + VAPOUR_LIGHTNESS * vapour)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,9 +6,6 @@ use crate::room::Room;
 use corpuscle_sph::kernel::SmoothingKernel;
 use rayon::prelude::*;
 
-/// A gradient of the colour larger than this over the spacing is a boundary's; on a plane it is about 0.5.
-pub const THRESHOLD: f64 = 0.15;
-
 impl Solids {
     /// Finds the boundary particles, their normals, and which particles are within reach of air.
     pub(super) fn find_boundary(&mut self, room: &Room, scale: &Scale, threshold: f64) {
@@ -40,6 +37,7 @@ impl Solids {
 mod tests {
     use super::*;
     use crate::room::Face;
+    use crate::settings::BOUNDARY_THRESHOLD;
     use crate::testing::block;
 
     #[test]
@@ -47,7 +45,7 @@ mod tests {
         // 10 x 10 x 6 particles, of which the lowest layer lies on the floor, a wall of the room.
         let room = Room { low: [-20.0, -20.0, 0.0], high: [20.0; 3], faces: [[Face::Wall; 2]; 3] };
         let scale = Scale::new(1.0, corpuscle_scene::KernelName::Mueller);
-        let solids = Solids::new(&[block([0.0; 3], [10, 10, 6], 1.0)], &room, &scale, THRESHOLD);
+        let solids = Solids::new(&[block([0.0; 3], [10, 10, 6], 1.0)], &room, &scale, BOUNDARY_THRESHOLD);
         for particle in &solids.particles {
             let [x, y, z] = particle.position;
             let depths = [x, 10.0 - x, y, 10.0 - y, 6.0 - z];
@@ -72,7 +70,7 @@ mod tests {
             &[block([0.0; 3], [10, 10, 6], 1.0)],
             &room,
             &Scale::new(1.0, corpuscle_scene::KernelName::Mueller),
-            THRESHOLD,
+            BOUNDARY_THRESHOLD,
         );
         for particle in solids.particles.iter().filter(|particle| particle.position[2] < 1.0) {
             let [x, y, _] = particle.position;

@@ -1,19 +1,20 @@
 //! Solids as particles that stay where they are: what they are made of, where their surface is, how they conduct heat.
 
+pub mod bodies;
 mod boundary;
 mod conduction;
+pub(crate) mod contact;
 mod ghosts;
 pub(crate) mod sources;
 #[cfg(feature = "gpu")]
 pub(crate) mod upload;
 pub(crate) mod wall;
 
-pub use boundary::THRESHOLD;
 pub use conduction::Conduction;
 pub(crate) use ghosts::ghost_contact;
 
 use crate::air::Scale;
-use crate::faces::BEYOND;
+use crate::constants::BEYOND;
 use crate::room::{Face, GhostParticle, Mirrors, Room};
 use crate::settings::{Conductor, WallTreatment};
 use corpuscle_model::ModelError;
@@ -48,13 +49,13 @@ impl From<corpuscle_solids::Material> for Material {
     }
 }
 
-/// Signed distance of a place to a surface, m, negative inside.
+/// Signed distance of a position to a surface, m, negative inside.
 pub type Surface = Arc<dyn Fn([f64; 3]) -> f64 + Send + Sync>;
 
 /// A solid as given: particles, and what they have in common.
 #[derive(Clone)]
 pub struct Body {
-    /// Places of its particles, m, half a spacing below the surface and deeper.
+    /// Positions of its particles, m, half a spacing below the surface and deeper.
     pub positions: Vec<[f64; 3]>,
     /// Their volumes, m3.
     pub volumes: Vec<f64>,
@@ -75,7 +76,7 @@ pub struct Body {
 /// A particle of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolidParticle {
-    /// Place, m.
+    /// Position, m.
     pub position: [f64; 3],
     /// Volume, m3.
     pub volume: f64,
@@ -107,7 +108,7 @@ pub struct Solids {
 /// Where a particle of a solid or its ghost particle stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Site {
-    /// Place, m.
+    /// Position, m.
     pub position: [f64; 3],
     /// The particle's number.
     pub particle: u32,
@@ -146,7 +147,7 @@ impl Body {
     ) -> Result<Self, ModelError> {
         let samples = solid.sample(spacing, Depth::Full).map_err(|error| ModelError::Setup(error.to_string()))?;
         let Samples { positions, volumes, areas } = samples;
-        let surface: Surface = Arc::new(move |place| solid.signed_distance(place));
+        let surface: Surface = Arc::new(move |position| solid.signed_distance(position));
         Ok(Self { positions, volumes, areas, material, temperature, held, surface: Some(surface), walls: None })
     }
 }
@@ -234,7 +235,7 @@ const AT_SIDE: f64 = 1.001;
 /// A body that reaches a side of the room that air passes, and of which there is nothing beyond, goes on there as its mirror image as far as there is air.
 fn mirrors(body: &Body, room: &Room, scale: &Scale) -> Mirrors {
     let depth = |axis: usize, side: usize| {
-        let depths = body.positions.iter().map(|&place| room.depth_beyond(place, axis, side));
+        let depths = body.positions.iter().map(|&position| room.depth_beyond(position, axis, side));
         depths.fold(f64::NEG_INFINITY, f64::max)
     };
     [0, 1, 2].map(|axis| {
@@ -262,12 +263,12 @@ impl Searched {
         Self { sites, cells }
     }
 
-    /// The sites within `reach` of a place, and the squares of their distances.
-    pub fn near(&self, place: [f64; 3], reach: f64) -> impl Iterator<Item = (&Site, f64)> {
+    /// The sites within `reach` of a position, and the squares of their distances.
+    pub fn near(&self, position: [f64; 3], reach: f64) -> impl Iterator<Item = (&Site, f64)> {
         let mut near = Vec::new();
         if !self.sites.is_empty() {
-            for range in self.cells.ranges_within(place, reach) {
-                let sites = self.sites[range].iter().map(|site| (site, distance_squared(site.position, place)));
+            for range in self.cells.ranges_within(position, reach) {
+                let sites = self.sites[range].iter().map(|site| (site, distance_squared(site.position, position)));
                 near.extend(sites.filter(|(_, r_squared)| *r_squared < reach * reach));
             }
         }
@@ -275,7 +276,7 @@ impl Searched {
     }
 }
 
-/// Square of the distance of two places, m2.
+/// Square of the distance of two positions, m2.
 pub(crate) fn distance_squared(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     x * x + y * y + z * z

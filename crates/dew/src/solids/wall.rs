@@ -4,11 +4,10 @@
 //! solids ([`Conduction`](super::Conduction)), so that all that goes through solids goes through walls, on CPU and GPU: heat flows between the middles of
 //! neighbouring cells through their resistances in series (Patankar 1980, Numerical Heat Transfer and Fluid Flow, section 4.2-3).
 
-use super::Material;
 use super::sources::{HeatSources, SurfacePart};
-use crate::bodies;
-use crate::dew::Dew;
+use super::{Material, Solids, bodies};
 use crate::humid_air::ZERO_CELSIUS;
+use crate::room::Room;
 use serde::{Deserialize, Serialize};
 
 /// A layer of a wall.
@@ -121,56 +120,57 @@ pub(super) fn holds_heat(layers: &[WallLayer]) -> bool {
     layers.iter().any(|layer| matches!(layer, WallLayer::Solid(..)))
 }
 
-impl Dew {
-    /// Puts walls behind the solids that have them. Heat flows through them as if it had done so for long: from the solid at its initial temperature to the air outside.
-    pub(crate) fn add_walls(&mut self, bodies: &[bodies::Body]) {
-        let mut links = Vec::new();
-        for (number, body) in bodies.iter().enumerate() {
-            if body.sources.outside.as_ref().is_some_and(|outside| holds_heat(&outside.layers)) {
-                self.add_wall(number, body, &mut links);
-            }
-        }
-        if self.solids.walls.is_empty() {
-            return;
-        }
-        self.conduction.connect(self.solids.nodes(), &links);
-        self.rebuild_heat_network();
-    }
-
-    fn add_wall(&mut self, number: usize, body: &bodies::Body, links: &mut Vec<(u32, u32, f64)>) {
-        let Some(outside) = &body.sources.outside else { return };
-        let step = self.settings.time_factor * self.step_by_sound(0.0);
-        let division = Division::new(&outside.layers, self.scale.spacing, step);
+/// Puts walls behind the solids that have them, in a room with particles a `spacing` apart, m, and appends the temperatures of their cells. Heat flows through
+/// them as if it had done so for long: from the solid at its initial temperature to the air outside. In a step of `step` s heat must not spread beyond a
+/// cell. Returns the conductances, W/K, between cells and from particles to them.
+pub(crate) fn add(
+    bodies: &[bodies::Body],
+    solids: &mut Solids,
+    temperatures: &mut Vec<f64>,
+    room: &Room,
+    spacing: f64,
+    step: f64,
+) -> Vec<(u32, u32, f64)> {
+    let mut links = Vec::new();
+    for (number, body) in bodies.iter().enumerate() {
+        let Some(outside) = body.sources.outside.as_ref().filter(|outside| holds_heat(&outside.layers)) else {
+            continue;
+        };
+        let division = Division::new(&outside.layers, spacing, step);
         let conditions = outside.surroundings.at(0.0);
         let inner = body.temperature.at(0.0) + ZERO_CELSIUS;
-        let wall = self.solids.walls.len() as u32;
-        self.solids.walls.push(number as u32);
-        for (particle, part) in HeatSources::parts_in_side(number, body, &self.solids, &self.room, self.scale.spacing) {
+        let wall = solids.walls.len() as u32;
+        solids.walls.push(number as u32);
+        for (particle, part) in HeatSources::parts_in_side(number, body, solids, room, spacing) {
             let [flux, _] = conditions.flux(inner, part.resistance + division.resistance());
             let (mut before, mut resistance, mut temperature) = (particle, part.resistance, inner);
             let last = division.cells.len() - 1;
             for (at, cell) in division.cells.iter().enumerate() {
                 resistance += cell.resistance_before;
                 temperature += flux * resistance;
-                let node = self.solids.nodes() as u32;
+                let node = solids.nodes() as u32;
                 links.push((before, node, part.area / resistance));
                 let outer = SurfacePart { area: part.area, resistance: division.last_resistance };
                 let outer = if at == last { outer } else { SurfacePart::default() };
                 let (capacity, layer) = (part.area * cell.capacity, cell.layer);
-                self.solids.cells.push(WallCell { capacity, wall, layer, outer });
-                self.state.temperatures.push(temperature);
+                solids.cells.push(WallCell { capacity, wall, layer, outer });
+                temperatures.push(temperature);
                 (before, resistance) = (node, 0.0);
             }
         }
     }
+    links
+}
 
-    /// Mean temperature, K, of each layer of the wall behind a body that holds heat, by the number of the layer.
-    pub(crate) fn layer_temperatures(&self, body: usize) -> Vec<(u32, f64)> {
-        let Some(group) = self.solids.wall_behind(body) else { return Vec::new() };
-        let wall = (group - self.solids.bodies.len()) as u32;
-        let temperatures = &self.state.temperatures[self.solids.particles.len()..];
+impl Solids {
+    /// Mean temperature, K, of each layer of the wall behind a body that holds heat, by the number of the layer; `temperatures` are those
+    /// of all particles and cells, K.
+    pub(crate) fn layer_temperatures(&self, body: usize, temperatures: &[f64]) -> Vec<(u32, f64)> {
+        let Some(group) = self.wall_behind(body) else { return Vec::new() };
+        let wall = (group - self.bodies.len()) as u32;
+        let temperatures = &temperatures[self.particles.len()..];
         let mut sums: Vec<(u32, [f64; 2])> = Vec::new();
-        for (cell, kelvin) in self.solids.cells.iter().zip(temperatures).filter(|(cell, _)| cell.wall == wall) {
+        for (cell, kelvin) in self.cells.iter().zip(temperatures).filter(|(cell, _)| cell.wall == wall) {
             let at = sums.iter().position(|(layer, _)| *layer == cell.layer).unwrap_or_else(|| {
                 sums.push((cell.layer, [0.0; 2]));
                 sums.len() - 1

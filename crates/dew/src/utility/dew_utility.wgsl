@@ -18,8 +18,8 @@ fn cubic(t: f32) -> vec4f {
 }
 
 // Distance to the nearest solid, m.
-fn distance_at(place: vec3f) -> f32 {
-    let at = (place - parameters.field_corner) * parameters.per_node;
+fn distance_at(position: vec3f) -> f32 {
+    let at = (position - parameters.field_corner) * parameters.per_node;
     let cell = clamp(vec3u(max(at, vec3f(1.0))), vec3u(1u), parameters.nodes - 3u);
     let part = at - vec3f(cell);
     let along = cubic(part.x);
@@ -36,16 +36,16 @@ fn distance_at(place: vec3f) -> f32 {
     return sum;
 }
 
-fn goes_away(place: vec3f, velocity: vec3f, distance: f32) -> bool {
+fn goes_away(position: vec3f, velocity: vec3f, distance: f32) -> bool {
     let speed = length(velocity);
-    return speed > 0.0 && distance_at(place + PROBE_STEP * parameters.h / speed * velocity) > distance;
+    return speed > 0.0 && distance_at(position + PROBE_STEP * parameters.h / speed * velocity) > distance;
 }
 
 fn utility(particle: Particle) -> u32 {
-    let distance = distance_at(particle.place);
+    let distance = distance_at(particle.position);
     let later = parameters.h / parameters.sound;
-    if distance < parameters.low_beyond || !goes_away(particle.place, particle.velocity, distance)
-        || !goes_away(particle.place, particle.velocity + later * particle.acceleration, distance) {
+    if distance < parameters.low_beyond || !goes_away(particle.position, particle.velocity, distance)
+        || !goes_away(particle.position, particle.velocity + later * particle.acceleration, distance) {
         return MATTERS;
     }
     let was_long = particle.role == IDLE && particle.idle > parameters.low_after;

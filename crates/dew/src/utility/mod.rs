@@ -7,19 +7,14 @@
 pub(crate) mod upload;
 
 use crate::air::{Particle, Role};
-use crate::dew::Dew;
+use crate::constants::{PROBE_STEP, UTILITY_STEPS};
+use crate::inventory::Inventory;
 use crate::settings::LowUtility;
 use crate::solids::Surface;
 use rayon::prelude::*;
 
-/// Steps between two searches for air of low utility.
-pub(crate) const UTILITY_STEPS: u64 = 10;
-
 /// Distance beyond that of low utility from which air is removed, in smoothing lengths: air that matters has no neighbours in the gap.
 pub(crate) const CULL_MARGIN: f64 = 2.0;
-
-/// Displacement along the velocity after which distances are compared, in smoothing lengths.
-pub(crate) const PROBE_STEP: f64 = 0.05;
 
 /// Class of a particle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,7 +24,7 @@ enum Utility {
     Gone,
 }
 
-impl Dew {
+impl Inventory<'_> {
     /// Finds the air of low utility, where a search is due, and removes what has been so for long.
     pub(crate) fn update_utility(&mut self) {
         let Some(low) = self.settings.low_utility.filter(|_| self.state.steps.is_multiple_of(UTILITY_STEPS)) else {
@@ -37,7 +32,7 @@ impl Dew {
         };
         let elapsed = self.state.time - self.state.utility_seen;
         self.state.utility_seen = self.state.time;
-        let zone = Zone { surfaces: &self.surfaces, h: self.scale.h(), sound_speed: self.air.sound_speed, low };
+        let zone = Zone { surfaces: self.surfaces, h: self.scale.h(), sound_speed: self.air.sound_speed, low };
         let utilities: Vec<Utility> =
             self.state.air.par_iter().with_min_len(256).map(|particle| zone.utility(particle)).collect();
         let mut air = std::mem::take(&mut self.state.air);
@@ -85,8 +80,8 @@ impl Zone<'_> {
         if is_far && was_long { Utility::Gone } else { Utility::Low }
     }
 
-    fn distance(&self, place: [f64; 3]) -> f64 {
-        self.surfaces.iter().map(|surface| surface(place)).fold(f64::INFINITY, f64::min)
+    fn distance(&self, position: [f64; 3]) -> f64 {
+        self.surfaces.iter().map(|surface| surface(position)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a particle moves away from the nearest solid, now and with the velocity that the force gives it while sound crosses a

@@ -1,8 +1,11 @@
 //! Distance from solids on nodes, for the search for air of low utility.
 
-use crate::dew::Dew;
-use crate::gpu::origin::Origin;
-use crate::gpu::shared::Parameters;
+use crate::air::Scale;
+use crate::origin::Origin;
+use crate::room::Room;
+use crate::settings::Settings;
+use crate::shared::Parameters;
+use crate::solids::Surface;
 use crate::utility::CULL_MARGIN;
 use rayon::prelude::*;
 
@@ -13,11 +16,18 @@ const FINER: f64 = 2.0;
 const BEYOND: f64 = 3.0;
 
 /// Sets the grid of the distances, and returns them, m; none where there is no search for air of low utility.
-pub(crate) fn distance_field(parameters: &mut Parameters, dew: &Dew, origin: Origin) -> Vec<f32> {
-    let Some(low) = dew.settings.low_utility else { return Vec::new() };
-    let (h, apart) = (dew.scale.h(), dew.scale.spacing / FINER);
-    let corner = dew.room.low.map(|low| low - BEYOND * apart);
-    let nodes = dew.room.size().map(|size| (size / apart + 2.0 * BEYOND).ceil() as usize + 1);
+pub(crate) fn distance_field(
+    parameters: &mut Parameters,
+    settings: &Settings,
+    room: &Room,
+    scale: &Scale,
+    surfaces: &[Surface],
+    origin: Origin,
+) -> Vec<f32> {
+    let Some(low) = settings.low_utility else { return Vec::new() };
+    let (h, apart) = (scale.h(), scale.spacing / FINER);
+    let corner = room.low.map(|low| low - BEYOND * apart);
+    let nodes = room.size().map(|size| (size / apart + 2.0 * BEYOND).ceil() as usize + 1);
     parameters.field_corner = origin.relative(corner);
     parameters.per_node = (1.0 / apart) as f32;
     parameters.nodes = nodes.map(|count| count as u32);
@@ -26,9 +36,9 @@ pub(crate) fn distance_field(parameters: &mut Parameters, dew: &Dew, origin: Ori
     parameters.low_after = low.after as f32;
     let distance = |number: usize| {
         let index = [number % nodes[0], number / nodes[0] % nodes[1], number / (nodes[0] * nodes[1])];
-        let place = [0, 1, 2].map(|axis| corner[axis] + index[axis] as f64 * apart);
+        let position = [0, 1, 2].map(|axis| corner[axis] + index[axis] as f64 * apart);
         // A number that arithmetic bears where there is no solid.
-        dew.surfaces.iter().map(|surface| surface(place)).fold(1e6, f64::min) as f32
+        surfaces.iter().map(|surface| surface(position)).fold(1e6, f64::min) as f32
     };
     (0..nodes.iter().product()).into_par_iter().with_min_len(1024).map(distance).collect()
 }

@@ -29,7 +29,7 @@ fn on_ground(particle: Particle) -> DeviceParticle {
     // What comes into an obstacle is put back before it is shown.
     let moved = particle.place + shown.since * particle.velocity;
     let place = select(moved, particle.place, is_held(moved));
-    as_seen.place = vec3f(place, ground_at(place).x + particle.depth);
+    as_seen.position = vec3f(place, ground_at(place).x + particle.depth);
     as_seen.spacing = shown.spacing;
     as_seen.velocity = vec3f(particle.velocity, 0.0);
     as_seen.depth = particle.depth;
@@ -43,7 +43,7 @@ fn in_air(drop: Drop) -> DeviceParticle {
     if drop.state != FALLS {
         return as_seen;
     }
-    as_seen.place = vec3f(drop.place, drop.z);
+    as_seen.position = vec3f(drop.place, drop.z);
     as_seen.spacing = shown.drop_spacing;
     as_seen.velocity = vec3f(drop.velocity, drop.w);
     as_seen.volume = drop.volume;

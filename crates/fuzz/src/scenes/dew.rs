@@ -12,7 +12,7 @@ pub(super) fn scene(maker: &mut Maker<'_>) -> String {
     let until = 1.0;
     let spacing = maker.one_of(&[0.003, 0.005, 0.008]);
     let size: [f64; 3] = std::array::from_fn(|_| spacing * (6 + maker.random.below(4)) as f64);
-    let scheme = if maker.has(0.3) { Scheme::Paper } else { Scheme::Physical };
+    let scheme = if maker.has(0.3) { Scheme::ParticleCondensation } else { Scheme::Physical };
     let faces = faces(maker);
     let all = [&faces.x_min, &faces.x_max, &faces.y_min, &faces.y_max, &faces.z_min, &faces.z_max];
     let leaves = all.iter().any(|face| matches!(face, Face::Outflow | Face::Open));
@@ -115,7 +115,7 @@ fn transport(maker: &mut Maker<'_>, scheme: Scheme) -> Transport {
         maker.maybe(0.3, |maker| maker.one_of(&[HumidityTransport::MassFraction, HumidityTransport::RelativeHumidity]));
     Transport {
         conductivity_mean: maker.maybe(0.3, |maker| maker.one_of(&[Mean::Harmonic, Mean::Arithmetic])),
-        humidity: humidity.filter(|_| scheme == Scheme::Paper),
+        humidity: humidity.filter(|_| scheme == Scheme::ParticleCondensation),
         latent_heat: maker.maybe(0.3, |maker| maker.random.chance(0.5)),
         vapour_diffusivity_m2_per_s: maker.maybe(0.2, |maker| maker.between(1e-6, 1e-4)),
         air_conductivity_w_per_m_k: maker.maybe(0.2, |maker| maker.between(0.005, 0.1)),

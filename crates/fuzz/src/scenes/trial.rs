@@ -56,7 +56,7 @@ struct Expected {
     kind: Kind,
     /// Balls do not overlap, and their energy is exact: not by fixed steps.
     exact: bool,
-    /// Heat and vapour that one gives the other takes: not as published (scheme `paper`).
+    /// Heat and vapour that one gives the other takes: not as published (scheme `particle-condensation`).
     gives_what_is_taken: bool,
     /// Of a lake: it began without motion.
     at_rest: bool,

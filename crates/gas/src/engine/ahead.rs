@@ -153,7 +153,7 @@ fn cells_around<const D: usize>(grid: &Grid<D>, events: &[Event<D>], ball: u32, 
 #[cfg(test)]
 mod tests {
     use super::Engine;
-    use crate::method::Pause;
+    use crate::pause::Pause;
     use crate::world::{Facing, Field, Kind, Start, Wall, World};
 
     /// Balls of diameter 1 or 0.4 on a lattice 1.1 wide, with velocities without order: parts of the multiples of irrational numbers

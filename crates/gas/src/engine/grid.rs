@@ -1,7 +1,7 @@
 //! Cells in which balls are searched.
 //!
 //! Two balls are compared when their cells touch. Balls much larger than most lie in coarser levels, each with cells twice as
-//! wide as the level below; a ball is a member of every level above its own by its place. A cell's number is a sum of one
+//! wide as the level below; a ball is a member of every level above its own by its position. A cell's number is a sum of one
 //! entry from a table for each axis, laid out so that cells near each other in space are near each other in memory: blocks
 //! of 64 cells, interleaved within. A border of empty cells surrounds walls; across periodic sides the tables wrap round.
 
@@ -85,7 +85,7 @@ impl<const D: usize> Grid<D> {
         self.levels.iter().position(fits).unwrap_or(self.levels.len() - 1) as u8
     }
 
-    /// The cell of a place in a level; places outside belong to the outermost cells.
+    /// The cell of a position in a level; positions outside belong to the outermost cells.
     pub fn cell_of(&self, level: u8, position: &[f64; D]) -> [u16; D] {
         let level = &self.levels[level as usize];
         std::array::from_fn(|axis| {

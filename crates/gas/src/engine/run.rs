@@ -2,7 +2,7 @@
 
 use super::Engine;
 use super::compiled_once::compiled_once;
-use crate::method::Pause;
+use crate::pause::Pause;
 use crate::world::{Mode, NONE, in_mode};
 use multiversion::multiversion;
 

@@ -72,7 +72,7 @@ impl<const D: usize> Engine<D> {
             // A ball is no wider than a cell. One step more, for rounding errors.
             let reach = 0.5 * level.size[wall.axis] + 2.0 * self.step(wall.axis);
             let mut edge = self.grid.low;
-            edge[wall.axis] = wall.place_at(self.world.now) + inward * reach;
+            edge[wall.axis] = wall.position_at(self.world.now) + inward * reach;
             let last = self.grid.cell_of(number as u8, &edge)[wall.axis];
             let mut cell = [1; D];
             let mut end = level.count;

@@ -1,7 +1,8 @@
 //! Moving a gas on: events, and in between what happens by plan.
 
 use super::{Due, Gas};
-use crate::method::{Mover, Pause};
+use crate::method::Mover;
+use crate::pause::Pause;
 use crate::world::Ball;
 use corpuscle_model::{CompensatedSum, ModelError};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -219,12 +220,12 @@ impl<const D: usize> Gas<D> {
         let Some(plan) = &mut self.plans[wall] else { return };
         let Some(knot) = plan.schedule.knot(plan.next) else { return };
         plan.next += 1;
-        let place = plan.home + knot.displacement;
+        let position = plan.home + knot.displacement;
         let world = self.mover.world_mut();
         let now = world.in_window(time);
         let moving = &mut world.walls[wall];
         moving.bend(now, knot.speed);
-        (moving.place, moving.acceleration) = (place, knot.acceleration);
+        (moving.position, moving.acceleration) = (position, knot.acceleration);
         self.mover.wall_changed(wall);
     }
 

@@ -1,9 +1,9 @@
 //! Making a gas from a set-up.
 
-use super::{Gas, Plan, Set};
+use super::{Gas, Plan};
 use crate::SetupError;
 use crate::engine::Engine;
-use crate::measure::Measures;
+use crate::measure::{Measures, Set};
 use crate::method::{FixedStep, List, Mover};
 use crate::setup::{Method, Placed, Region, Setup};
 use crate::world::{CountedRegion, Field, Followed, Kind, Rebound, Slide, Start, World};
@@ -22,7 +22,7 @@ impl<const D: usize> Gas<D> {
         world.random.set_stream(1);
         let mut plans = Vec::new();
         for (mut wall, schedule) in setup.walls() {
-            let home = wall.place;
+            let home = wall.position;
             let mut plan = schedule.map(|schedule| Plan { schedule, next: 0, home });
             if let Some(plan) = &mut plan {
                 plan.start(&mut wall);
@@ -71,14 +71,14 @@ impl<const D: usize> Gas<D> {
     }
 }
 
-/// All balls at their places, with velocities; the table of kinds; the sets.
+/// All balls at their positions, with velocities; the table of kinds; the sets.
 type Contents<const D: usize> = (Vec<Start<D>>, Vec<Kind>, Vec<Set>);
 
 impl Plan {
     /// Takes the knots that are at time 0.
     fn start(&mut self, wall: &mut crate::world::Wall) {
         while let Some(knot) = self.schedule.knot(self.next).filter(|knot| knot.time <= 0.0) {
-            wall.place = self.home + knot.displacement;
+            wall.position = self.home + knot.displacement;
             (wall.speed, wall.acceleration) = (knot.speed, knot.acceleration);
             self.next += 1;
         }
@@ -90,13 +90,13 @@ impl<const D: usize> Setup<D> {
     fn starts(&self) -> Result<Contents<D>, SetupError> {
         self.check()?;
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
-        let places = self.places(&mut random)?;
-        self.check_overlaps(&places)?;
-        self.check_plans(&places)?;
-        self.check_pistons(&places)?;
+        let balls = self.placed(&mut random)?;
+        self.check_overlaps(&balls)?;
+        self.check_plans(&balls)?;
+        self.check_pistons(&balls)?;
         let mut table = Table::default();
-        let mut starts = Vec::with_capacity(places.len());
-        let mut at = places.iter();
+        let mut starts = Vec::with_capacity(balls.len());
+        let mut at = balls.iter();
         let mut put = |name: &str, mass: f64, velocity: [f64; D], table: &mut Table| {
             let Some(&Placed { position, radius }) = at.next() else { return };
             let (kind, species) = (table.kind(radius, mass), table.set(name, mass));

@@ -9,7 +9,7 @@ mod state;
 
 pub use live_change::LiveChange;
 
-use crate::measure::Measures;
+use crate::measure::{Measures, Set};
 use crate::method::Mover;
 use crate::setup::{Schedule, Setup};
 use live_change::LiveTally;
@@ -40,15 +40,6 @@ pub struct Gas<const D: usize> {
     si: bool,
     /// What live changes added and removed.
     live: LiveTally,
-}
-
-/// Balls of one name.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Set {
-    pub name: String,
-    /// Mass of a ball: of the first of them.
-    pub mass: f64,
-    pub colour: Option<String>,
 }
 
 /// A wall's plan, how far it has come, and where the wall started.

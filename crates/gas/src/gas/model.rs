@@ -45,7 +45,7 @@ impl<const D: usize> Gas<D> {
             ["centre_x", "centre_y", "centre_z"]
                 .into_iter()
                 .zip(self.centre_of_mass())
-                .map(|(name, place)| (name, "m", place))
+                .map(|(name, position)| (name, "m", position))
                 // A sheared gas has no centre along the flow.
                 .skip(usize::from(self.setup.shear.is_some())),
         );
@@ -140,8 +140,8 @@ impl<const D: usize> Gas<D> {
                     self.setup.sides[axis][end],
                     crate::Side::Fixed | crate::Side::Periodic | crate::Side::Thermal { .. }
                 );
-                if let Some([place, speed]) = self.wall(axis, end).filter(|_| moves) {
-                    gauges.push((name.clone(), "position", "m", place));
+                if let Some([position, speed]) = self.wall(axis, end).filter(|_| moves) {
+                    gauges.push((name.clone(), "position", "m", position));
                     gauges.push((name, "velocity", "m_per_s", speed));
                 }
             }
@@ -310,7 +310,7 @@ impl<const D: usize> Model for Gas<D> {
         vec![Path {
             name: format!("ball {}", followed.id),
             times: path.iter().map(|(time, _)| *time).collect(),
-            points: path.into_iter().map(|(_, place)| padded(place)).collect(),
+            points: path.into_iter().map(|(_, position)| padded(position)).collect(),
         }]
     }
 

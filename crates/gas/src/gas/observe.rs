@@ -24,7 +24,7 @@ impl<const D: usize> Gas<D> {
         self.mover.world().in_window(self.shown)
     }
 
-    /// Places and velocities of all balls at the time shown, in order of their numbers; places inside the box.
+    /// Positions and velocities of all balls at the time shown, in order of their numbers; positions inside the box.
     pub fn states(&self) -> Vec<([f64; D], [f64; D])> {
         let world = self.mover.world();
         let mut states = vec![([0.0; D], [0.0; D]); world.balls.len()];
@@ -34,7 +34,7 @@ impl<const D: usize> Gas<D> {
         states
     }
 
-    /// Places at the time shown as if the box did not repeat.
+    /// Positions at the time shown as if the box did not repeat.
     pub fn unwrapped(&self) -> Vec<[f64; D]> {
         self.snapshot(self.shown).unwrapped
     }
@@ -93,8 +93,8 @@ impl<const D: usize> Gas<D> {
     pub fn potential_energy(&self) -> f64 {
         let world = self.mover.world();
         let heights = |ball: usize| -> f64 {
-            let place = world.unwrapped(ball, self.now());
-            world.mass(ball) * (0..D).map(|axis| -world.field.gravity[axis] * place[axis]).sum::<f64>()
+            let position = world.unwrapped(ball, self.now());
+            world.mass(ball) * (0..D).map(|axis| -world.field.gravity[axis] * position[axis]).sum::<f64>()
         };
         let raised =
             if world.falls() { (0..world.balls.len()).map(heights).collect::<CompensatedSum>().value() } else { 0.0 };
@@ -160,8 +160,8 @@ impl<const D: usize> Gas<D> {
         let (world, now) = (self.mover.world(), self.now());
         let masses: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
         std::array::from_fn(|axis| {
-            let place = |ball: usize| world.unwrapped(ball, now)[axis];
-            (0..world.balls.len()).map(|ball| world.mass(ball) * place(ball)).collect::<CompensatedSum>().value()
+            let position = |ball: usize| world.unwrapped(ball, now)[axis];
+            (0..world.balls.len()).map(|ball| world.mass(ball) * position(ball)).collect::<CompensatedSum>().value()
                 / masses
         })
     }
@@ -204,13 +204,13 @@ impl<const D: usize> Gas<D> {
         self.measures.flow.as_ref().map_or_else(Vec::new, |flow| flow.profile([0.0, self.setup.size[1]]))
     }
 
-    /// Place and velocity, at the time shown, of the lower (0) or upper (1) wall along an axis; none where the box repeats.
+    /// Position and velocity, at the time shown, of the lower (0) or upper (1) wall along an axis; none where the box repeats.
     pub fn wall(&self, axis: usize, end: usize) -> Option<[f64; 2]> {
         use crate::world::Facing::{Down, Up};
         let facing = if end == 0 { Up } else { Down };
         let world = self.mover.world();
         let wall = world.walls.iter().find(|wall| wall.axis == axis && wall.facing == facing)?;
-        Some([wall.place_at(self.now()), wall.speed_at(self.now())])
+        Some([wall.position_at(self.now()), wall.speed_at(self.now())])
     }
 
     /// Deepest overlap of two balls over the smallest radius of all, or of a ball and a wall over its own, at the time shown; 0 for
@@ -505,7 +505,7 @@ impl<const D: usize> Gas<D> {
         self.measures.pairs.g::<D>()
     }
 
-    /// Time and place of every bend of the followed ball's path so far, and where it is now.
+    /// Time and position of every bend of the followed ball's path so far, and where it is now.
     pub fn path(&self) -> Vec<(f64, [f64; D])> {
         let world = self.mover.world();
         let Some(followed) = &world.followed else { return Vec::new() };
@@ -664,7 +664,7 @@ mod tests {
     use corpuscle_model::Model;
     use std::sync::atomic::AtomicBool;
 
-    /// Sums over the balls of momentum along the first of two axes times place along the second, and of energy times place.
+    /// Sums over the balls of momentum along the first of two axes times position along the second, and of energy times position.
     fn sums(gas: &crate::Gas<3>) -> [f64; 6] {
         let mut sums = [0.0; 6];
         for (number, (position, velocity)) in gas.states().iter().enumerate() {
@@ -680,7 +680,7 @@ mod tests {
 
     /// In a part of a box that no ball leaves the moments are what their definition says.
     #[test]
-    fn moments_are_momentum_and_energy_times_place() {
+    fn moments_are_momentum_and_energy_times_position() {
         let region = Some([[40.0; 3], [44.0; 3]]);
         let heavy = Species { region, mass: 3.0, radius: 0.3, ..Species::new("heavy", Amount::Count(20)) };
         let setup = Setup::<3>::new([84.0; 3]).periodic().species(heavy);

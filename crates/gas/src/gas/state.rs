@@ -157,7 +157,7 @@ impl SavedWorld {
             slide: world.field.slide,
             moments: world.moments,
             random: world.random.get_word_pos(),
-            bends: bends.map(|(time, place)| (*time, place.to_vec())).collect(),
+            bends: bends.map(|(time, position)| (*time, position.to_vec())).collect(),
             followed_collisions: world.followed.as_ref().map_or(0, |followed| followed.collisions),
             regions: world.regions.iter().map(|region| region.virial).collect(),
         }
@@ -218,7 +218,8 @@ impl SavedWorld {
         world.regions.iter_mut().zip(&self.regions).for_each(|(region, virial)| region.virial = *virial);
         if let Some(followed) = &mut world.followed {
             followed.collisions = self.followed_collisions;
-            followed.bends = self.bends.iter().filter_map(|(time, place)| Some((*time, vector(place, 0)?))).collect();
+            followed.bends =
+                self.bends.iter().filter_map(|(time, position)| Some((*time, vector(position, 0)?))).collect();
         }
         Some(())
     }

@@ -1,7 +1,6 @@
 //! What was measured, as charts.
 
-use super::Measures;
-use crate::gas::Set;
+use super::{Measures, Set};
 use crate::setup::Setup;
 use crate::theory;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle};

@@ -24,6 +24,17 @@ use serde::{Deserialize, Serialize};
 /// Samples between two counts of pairs, which take longer than the rest.
 const SAMPLES_PER_PAIR_COUNT: usize = 8;
 
+/// Balls of one name.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Set {
+    /// The name.
+    pub name: String,
+    /// Mass of a ball: of the first of them.
+    pub mass: f64,
+    /// Colour that the scene gives, if any.
+    pub colour: Option<String>,
+}
+
 /// Everything measured so far.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Measures {
@@ -45,7 +56,7 @@ pub(crate) struct Measures {
     pub pairs: Pairs,
     /// Velocity along x over y, in a sheared box.
     pub flow: Option<Flow>,
-    /// Places of all balls, by number, when averages began.
+    /// Positions of all balls, by number, when averages began.
     pub starts: Vec<f64>,
     /// When that was.
     pub started: f64,
@@ -96,7 +107,7 @@ impl Measures {
     /// Restarts the averages, with histograms up to other speeds; samples over time stay.
     pub fn begin_anew<const D: usize>(&mut self, setup: &Setup<D>, largest: Vec<f64>) {
         let mut samples = std::mem::take(&mut self.samples);
-        // Counted from other places.
+        // Counted from other positions.
         samples.iter_mut().for_each(|sample| sample.displacement.clear());
         *self = Measures { samples, ..Self::new(setup, self.speeds.len(), largest) };
     }
@@ -122,10 +133,10 @@ impl Measures {
         // Along x a shear flow carries balls away.
         let first = usize::from(self.flow.is_some());
         for (number, start) in self.starts.chunks_exact(D).enumerate() {
-            let place = &snapshot.unwrapped[number];
+            let position = &snapshot.unwrapped[number];
             let set = snapshot.set[number] as usize;
             let carried = snapshot.drift.map(|velocity| velocity * (snapshot.sample.time - self.started));
-            sums[set] += (first..D).map(|axis| (place[axis] - start[axis] - carried[axis]).powi(2)).sum::<f64>();
+            sums[set] += (first..D).map(|axis| (position[axis] - start[axis] - carried[axis]).powi(2)).sum::<f64>();
             counts[set] += 1.0;
         }
         sums.iter().zip(counts).map(|(sum, count)| sum / count).collect()

@@ -14,7 +14,7 @@ pub(crate) struct Pairs {
     pub reach: f64,
     /// Pairs in shells of equal thickness.
     pub counts: Vec<u64>,
-    /// Pairs that there would be, for each unit of area or volume of a shell, if all places were equally likely.
+    /// Pairs that there would be, for each unit of area or volume of a shell, if all positions were equally likely.
     pub expected: f64,
 }
 

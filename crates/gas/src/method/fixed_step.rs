@@ -1,7 +1,7 @@
 //! The old method: equal steps, after each of which all pairs are tested. Balls overlap, and pass through one another; both are
 //! counted.
 
-use super::Pause;
+use crate::pause::Pause;
 use crate::world::{Facing, Falling, Mode, Path, Quadratic, Straight, World};
 use serde::{Deserialize, Serialize};
 
@@ -96,12 +96,13 @@ impl<const D: usize> FixedStep<D> {
     /// A ball that went into a wall lies against it.
     fn lift_out(&mut self, ball: usize, wall: usize) {
         let world = &mut self.world;
-        let (axis, place, radius) = (world.walls[wall].axis, world.walls[wall].place_at(world.now), world.radius(ball));
+        let (axis, position, radius) =
+            (world.walls[wall].axis, world.walls[wall].position_at(world.now), world.radius(ball));
         let x = &mut world.balls[ball].position[axis];
         // Not by the larger of both: a position that is not a number must not become the wall's.
         match world.walls[wall].facing {
-            Facing::Up if *x < place + radius => *x = place + radius,
-            Facing::Down if *x > place - radius => *x = place - radius,
+            Facing::Up if *x < position + radius => *x = position + radius,
+            Facing::Down if *x > position - radius => *x = position - radius,
             _ => {}
         }
     }
@@ -109,8 +110,8 @@ impl<const D: usize> FixedStep<D> {
     fn wrap<M: Mode>(&mut self, ball: usize, axis: usize) {
         let world = &mut self.world;
         if world.field.period[axis] > 0.0 {
-            let place = world.field.state::<M>(&world.balls[ball], world.now).0[axis] - world.low[axis];
-            let over = (place / world.length[axis]).floor();
+            let position = world.field.state::<M>(&world.balls[ball], world.now).0[axis] - world.low[axis];
+            let over = (position / world.length[axis]).floor();
             if over != 0.0 {
                 world.wrap(ball, axis, over as i32);
             }
@@ -124,9 +125,9 @@ impl<const D: usize> FixedStep<D> {
                 let world = &self.world;
                 let reach = world.radius(a) + world.radius(b);
                 let now = world.now;
-                let (place_a, _) = world.field.state::<M>(&world.balls[a], now);
-                let (place_b, _) = world.field.state::<M>(&world.balls[b], now);
-                let mut apart: [f64; D] = std::array::from_fn(|axis| place_b[axis] - place_a[axis]);
+                let (position_a, _) = world.field.state::<M>(&world.balls[a], now);
+                let (position_b, _) = world.field.state::<M>(&world.balls[b], now);
+                let mut apart: [f64; D] = std::array::from_fn(|axis| position_b[axis] - position_a[axis]);
                 world.field.nearest(&mut apart);
                 let apart2: f64 = apart.iter().map(|x| x * x).sum();
                 if apart2 < reach * reach {
@@ -150,8 +151,8 @@ impl<const D: usize> FixedStep<D> {
         self.faults.overlaps += 1;
         self.faults.deepest = self.faults.deepest.max(depth / self.world.radius(a).min(self.world.radius(b)));
         let state = |ball: usize| self.world.field.state::<M>(&self.world.balls[ball], self.world.now);
-        let ((place_a, velocity_a), (place_b, velocity_b)) = (state(a), state(b));
-        let mut apart: [f64; D] = std::array::from_fn(|axis| place_b[axis] - place_a[axis]);
+        let ((position_a, velocity_a), (position_b, velocity_b)) = (state(a), state(b));
+        let mut apart: [f64; D] = std::array::from_fn(|axis| position_b[axis] - position_a[axis]);
         self.world.field.nearest(&mut apart);
         let approach: f64 = (0..D).map(|axis| apart[axis] * (velocity_b[axis] - velocity_a[axis])).sum();
         if approach < 0.0 {

@@ -5,7 +5,7 @@
 //! partners ("disturbed"), find new ones among all others. The cost of an event grows with the number of balls. The moments
 //! are those of the fast engine, without periodic sides to the bit.
 
-use super::Pause;
+use crate::pause::Pause;
 use crate::world::{Ball, Mode, Path, Quadratic, World, first_contact, in_mode};
 
 /// Events between windows.

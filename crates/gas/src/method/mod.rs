@@ -8,20 +8,8 @@ pub(crate) use list::List;
 pub use list::{Nearest, With};
 
 use crate::engine::Engine;
+use crate::pause::Pause;
 use crate::world::World;
-
-/// Why a method came back.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pause {
-    /// No event is left up to the requested time.
-    Reached,
-    /// The requested number of events has been handled.
-    Worked,
-    /// A new window is due.
-    WindowFull,
-    /// Collisions follow each other without anything moving.
-    Standstill,
-}
 
 /// A gas and how it is moved on.
 #[derive(Debug)]

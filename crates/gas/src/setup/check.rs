@@ -246,10 +246,10 @@ impl<const D: usize> Setup<D> {
     }
 
     /// What moves by plan leaves room for all balls. (A wall that never stops is stopped when it presses the balls together.)
-    pub(crate) fn check_plans(&self, places: &[Placed<D>]) -> Result<(), SetupError> {
-        let filled: f64 = places.iter().map(|placed| ball_volume::<D>(placed.radius)).sum();
-        let largest = places.iter().map(|placed| placed.radius).fold(0.0, f64::max);
-        let alike = places.iter().all(|placed| placed.radius == largest);
+    pub(crate) fn check_plans(&self, balls: &[Placed<D>]) -> Result<(), SetupError> {
+        let filled: f64 = balls.iter().map(|placed| ball_volume::<D>(placed.radius)).sum();
+        let largest = balls.iter().map(|placed| placed.radius).fold(0.0, f64::max);
+        let alike = balls.iter().all(|placed| placed.radius == largest);
         let limit = if alike { closest::<D>() } else { 1.0 };
         for axis in 0..D {
             let rest: f64 = (0..D).filter(|&other| other != axis).map(|other| self.size[other]).product();
@@ -269,14 +269,14 @@ impl<const D: usize> Setup<D> {
     }
 
     /// No ball overlaps another, a wall or the partition.
-    pub(crate) fn check_overlaps(&self, places: &[Placed<D>]) -> Result<(), SetupError> {
+    pub(crate) fn check_overlaps(&self, balls: &[Placed<D>]) -> Result<(), SetupError> {
         let period =
             std::array::from_fn(|axis| if self.sides[axis][0] == Side::Periodic { self.size[axis] } else { 0.0 });
-        let largest = places.iter().map(|placed| placed.radius).fold(0.0, f64::max);
-        let mut hash = Hash::new([0.0; D], self.size, period, 2.0 * largest, places.len());
-        let order = hash.in_order(places.iter().map(|placed| placed.position));
+        let largest = balls.iter().map(|placed| placed.radius).fold(0.0, f64::max);
+        let mut hash = Hash::new([0.0; D], self.size, period, 2.0 * largest, balls.len());
+        let order = hash.in_order(balls.iter().map(|placed| placed.position));
         for &number in &order {
-            let placed = &places[number];
+            let placed = &balls[number];
             let what = || format!("ball {number} of radius {} at {:?}", placed.radius, placed.position);
             for axis in (0..D).filter(|&axis| period[axis] == 0.0) {
                 let x = placed.position[axis];

@@ -6,13 +6,13 @@ use corpuscle_scene::{is_name, read_text};
 use std::path::Path;
 
 /// Names of columns that say the same: those of `corpuscle run --frames csv` first.
-const PLACE: [&[&str]; 3] = [&["x", "pos_0"], &["y", "pos_1"], &["z", "pos_2"]];
+const POSITION: [&[&str]; 3] = [&["x", "pos_0"], &["y", "pos_1"], &["z", "pos_2"]];
 const VELOCITY: [&[&str]; 3] = [&["vx", "velo_0", "vel_0"], &["vy", "velo_1", "vel_1"], &["vz", "velo_2", "vel_2"]];
 const NAME: &[&str] = &["set", "species", "name"];
 /// Longest name of balls: names of charts' files have it in them.
 const LONGEST_NAME: usize = 100;
 
-/// Reads the balls of a file, whose name ends in `.xyz`, `.extxyz` or `.csv`. Needed are places, radius and mass; velocities that are not there are 0, names
+/// Reads the balls of a file, whose name ends in `.xyz`, `.extxyz` or `.csv`. Needed are positions, radius and mass; velocities that are not there are 0, names
 /// that are not there `balls`.
 ///
 /// # Errors
@@ -85,10 +85,10 @@ impl<'a> Table<'a> {
     }
 
     fn balls<const D: usize>(&self) -> Result<Vec<Ball<D>>, String> {
-        let place = PLACE[..D].iter().map(|names| self.needed(names)).collect::<Result<Vec<_>, _>>()?;
+        let position = POSITION[..D].iter().map(|names| self.needed(names)).collect::<Result<Vec<_>, _>>()?;
         let (radius, mass) = (self.needed(&["radius"])?, self.needed(&["mass"])?);
         let (velocity, name) = (VELOCITY.map(|names| self.column(names)), self.column(NAME));
-        let above = if D == 2 { self.column(PLACE[2]) } else { None };
+        let above = if D == 2 { self.column(POSITION[2]) } else { None };
         let ball = |(line, words): &(usize, Vec<&str>)| {
             if words.len() != self.names.len() {
                 return Err(format!(":{line}: {} values stand here, and {} columns", words.len(), self.names.len()));
@@ -117,7 +117,7 @@ impl<'a> Table<'a> {
                 mass: number(mass)?,
             };
             for axis in 0..D {
-                ball.position[axis] = number(place[axis])?;
+                ball.position[axis] = number(position[axis])?;
                 ball.velocity[axis] = velocity[axis].map(number).transpose()?.unwrap_or(0.0);
             }
             Ok(ball)

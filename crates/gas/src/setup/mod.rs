@@ -132,7 +132,7 @@ pub enum Side {
 pub struct Partition {
     /// The axis that it stands across.
     pub axis: usize,
-    /// Its place along that axis.
+    /// Its position along that axis.
     pub at: f64,
     /// When it is taken away.
     pub lifted_at: Option<f64>,
@@ -157,7 +157,7 @@ pub enum Method {
 pub struct Ball<const D: usize> {
     /// What it is; balls of one name are one set.
     pub name: String,
-    /// Place of its centre.
+    /// Position of its centre.
     pub position: [f64; D],
     /// Velocity.
     pub velocity: [f64; D],

@@ -21,10 +21,10 @@ impl<const D: usize> Setup<D> {
     /// where it is shown to be exact near close packing), compression without heat keeps energy times gap squared, the gap being that
     /// between neighbours over their diameter: (closest / packing)^(1/D) - 1. A piston faster than sound heats the gas more: what the
     /// balls have at the piston's speed is counted as energy that they have at first.
-    pub(crate) fn check_pistons(&self, places: &[Placed<D>]) -> Result<(), SetupError> {
-        let filled: f64 = places.iter().map(|placed| ball_volume::<D>(placed.radius)).sum();
-        let largest = places.iter().map(|placed| placed.radius).fold(0.0, f64::max);
-        let limit = if places.iter().all(|placed| placed.radius == largest) { closest::<D>() } else { 1.0 };
+    pub(crate) fn check_pistons(&self, balls: &[Placed<D>]) -> Result<(), SetupError> {
+        let filled: f64 = balls.iter().map(|placed| ball_volume::<D>(placed.radius)).sum();
+        let largest = balls.iter().map(|placed| placed.radius).fold(0.0, f64::max);
+        let limit = if balls.iter().all(|placed| placed.radius == largest) { closest::<D>() } else { 1.0 };
         let volume: f64 = self.size.iter().product();
         let gap = (pow(limit * volume / filled, 1.0 / D as f64) - 1.0).max(0.0);
         let [mass, energy] = self.mass_and_energy();

@@ -46,27 +46,27 @@ impl<const D: usize> Setup<D> {
     }
 
     /// Positions of all balls: those given one by one, then each species'.
-    pub(crate) fn places(&self, random: &mut ChaCha8Rng) -> Result<Vec<Placed<D>>, SetupError> {
-        let mut places: Vec<Placed<D>> =
+    pub(crate) fn placed(&self, random: &mut ChaCha8Rng) -> Result<Vec<Placed<D>>, SetupError> {
+        let mut all: Vec<Placed<D>> =
             self.balls.iter().map(|ball| Placed { position: ball.position, radius: ball.radius }).collect();
         let mut of_species: Vec<Vec<Placed<D>>> = vec![Vec::new(); self.species.len()];
         for (number, species) in self.species.iter().enumerate() {
             self.check_packing(species)?;
             if species.start == Start::Lattice {
                 of_species[number] = self.on_lattice(species)?;
-                places.extend(&of_species[number]);
+                all.extend(&of_species[number]);
             }
         }
         for group in self.random_groups() {
-            let placed = random::place(self, &group, &places, random)?;
+            let placed = random::place(self, &group, &all, random)?;
             for (number, balls) in group.into_iter().zip(placed) {
-                places.extend(&balls);
+                all.extend(&balls);
                 of_species[number] = balls;
             }
         }
-        places.truncate(self.balls.len());
-        places.extend(of_species.into_iter().flatten());
-        Ok(places)
+        all.truncate(self.balls.len());
+        all.extend(of_species.into_iter().flatten());
+        Ok(all)
     }
 
     /// Species to be placed at random, those of one region together.
@@ -126,7 +126,7 @@ impl<const D: usize> Setup<D> {
         Ok(points.into_iter().map(place).map(|placed| self.inside(placed)).collect())
     }
 
-    /// The same place in the box itself.
+    /// The same position in the box itself.
     pub(super) fn inside(&self, mut placed: Placed<D>) -> Placed<D> {
         for axis in (0..D).filter(|&axis| self.sides[axis][0] == Side::Periodic) {
             placed.position[axis] = placed.position[axis].rem_euclid(self.size[axis]);

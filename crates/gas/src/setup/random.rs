@@ -9,13 +9,13 @@ use crate::SetupError;
 use crate::engine::Engine;
 use crate::functions::pow;
 use crate::hash::Hash;
-use crate::method::Pause;
+use crate::pause::Pause;
 use crate::random::normal;
 use crate::world::{Facing, Field, Kind, Start, Wall, World};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// A ball at its place.
+/// A ball at its position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Placed<const D: usize> {
     pub position: [f64; D],
@@ -159,7 +159,7 @@ impl<const D: usize> Site<'_, D> {
         Some(positions)
     }
 
-    /// Draws a place for each ball, in the order of the cells; the balls that have no room there.
+    /// Draws a position for each ball, in the order of the cells; the balls that have no room there.
     fn try_once(
         &self,
         balls: &[usize],
@@ -184,7 +184,7 @@ impl<const D: usize> Site<'_, D> {
         left
     }
 
-    /// A place of the region where a ball is inside it.
+    /// A position of the region where a ball is inside it.
     fn anywhere(&self, radius: f64, random: &mut ChaCha8Rng) -> [f64; D] {
         std::array::from_fn(|axis| {
             let margin = if self.repeats[axis] { 0.0 } else { radius };
@@ -198,7 +198,7 @@ impl<const D: usize> Site<'_, D> {
         partition.as_ref().is_none_or(|partition| (position[partition.axis] - partition.at).abs() >= radius)
     }
 
-    /// Places reached by growing; the packing at which that ended where it jams.
+    /// Positions reached by growing; the packing at which that ended where it jams.
     fn grow(&self, radii: &[f64], packing: f64, random: &mut ChaCha8Rng) -> Result<Vec<[f64; D]>, f64> {
         let alike = self.obstacles().next().is_none() && radii.iter().all(|&radius| radius == radii[0]);
         if alike && radii.len() >= JAMMING_MIN_COUNT && packing > JAMMING_PACKING[D - 2] {
@@ -226,14 +226,14 @@ impl<const D: usize> Site<'_, D> {
         let mut grown = vec![[0.0; D]; radii.len()];
         for ball in 0..engine.world.balls.len() {
             let id = engine.world.records[ball].id as usize;
-            if let Some(place) = grown.get_mut(id) {
-                *place = engine.world.state(ball, engine.world.now).0;
+            if let Some(position) = grown.get_mut(id) {
+                *position = engine.world.state(ball, engine.world.now).0;
             }
         }
         Ok(grown)
     }
 
-    /// Radii over those in the end, and places for balls of them; a packing for which there is no room.
+    /// Radii over those in the end, and positions for balls of them; a packing for which there is no room.
     fn seeds(&self, radii: &[f64], packing: f64, random: &mut ChaCha8Rng) -> Result<(f64, Vec<[f64; D]>), f64> {
         let mut dropped = |seed: [f64; 2]| {
             let scale = pow(seed[D - 2] / packing, 1.0 / D as f64).min(SEED_RADIUS);

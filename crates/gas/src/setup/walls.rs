@@ -118,8 +118,8 @@ impl<const D: usize> Setup<D> {
     }
 
     fn wall(&self, axis: usize, end: usize, side: &Side) -> Wall {
-        let (facing, place) = if end == 0 { (Facing::Up, 0.0) } else { (Facing::Down, self.size[axis]) };
-        let mut wall = Wall::fixed(axis, facing, place);
+        let (facing, position) = if end == 0 { (Facing::Up, 0.0) } else { (Facing::Down, self.size[axis]) };
+        let mut wall = Wall::fixed(axis, facing, position);
         match side {
             Side::Thermal { temperature } => wall.temperature = Some(self.boltzmann * temperature),
             Side::Piston { mass, pressure, velocity } => {

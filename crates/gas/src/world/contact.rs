@@ -108,7 +108,7 @@ pub(crate) struct Field<const D: usize> {
 }
 
 impl<const D: usize> Field<D> {
-    /// Place and velocity of a ball at a time.
+    /// Position and velocity of a ball at a time.
     #[inline(always)]
     pub fn state<M: Mode>(&self, ball: &Ball<D>, time: f64) -> ([f64; D], [f64; D]) {
         let since = time - ball.time;
@@ -123,7 +123,7 @@ impl<const D: usize> Field<D> {
         (position, velocity)
     }
 
-    /// Takes off whole periods, so that a difference of places is the shortest.
+    /// Takes off whole periods, so that a difference of positions is the shortest.
     #[inline(always)]
     pub fn nearest(&self, apart: &mut [f64; D]) {
         for axis in 0..D {
@@ -168,16 +168,16 @@ fn relative<const D: usize, M: Mode>(
     let mut apart = [0.0; D];
     let mut approach = [0.0; D];
     for axis in 0..D {
-        let mut place_a = a.position[axis] + a.velocity[axis] * since_a;
-        let mut place_b = b.position[axis] + b.velocity[axis] * since_b;
+        let mut position_a = a.position[axis] + a.velocity[axis] * since_a;
+        let mut position_b = b.position[axis] + b.velocity[axis] * since_b;
         approach[axis] = b.velocity[axis] - a.velocity[axis];
         if M::FALLS {
             let gravity = field.gravity[axis];
-            place_a += 0.5 * gravity * since_a * since_a;
-            place_b += 0.5 * gravity * since_b * since_b;
+            position_a += 0.5 * gravity * since_a * since_a;
+            position_b += 0.5 * gravity * since_b * since_b;
             approach[axis] = (b.velocity[axis] + gravity * since_b) - (a.velocity[axis] + gravity * since_a);
         }
-        apart[axis] = (place_b - place_a) + offset[axis];
+        apart[axis] = (position_b - position_a) + offset[axis];
     }
     (start, apart, approach)
 }

@@ -72,7 +72,7 @@ impl<const D: usize> World<D> {
         if !self.regions.is_empty() {
             let centre = self.balls[ball].position;
             let mut to_wall = [0.0; D];
-            to_wall[axis] = self.walls[wall].place_at(self.now) - centre[axis];
+            to_wall[axis] = self.walls[wall].position_at(self.now) - centre[axis];
             self.count_in_regions(centre, to_wall, virial);
         }
         self.watch(flown * (before[axis] - push).abs() * radius, radius * radius);
@@ -106,10 +106,10 @@ impl<const D: usize> World<D> {
     }
 }
 
-fn position_is_above(wall: &Wall, place: f64, now: f64) -> bool {
+fn position_is_above(wall: &Wall, position: f64, now: f64) -> bool {
     match wall.facing {
         Facing::Up => true,
         Facing::Down => false,
-        Facing::Both => place > wall.place_at(now),
+        Facing::Both => position > wall.position_at(now),
     }
 }

@@ -77,7 +77,7 @@ pub(crate) struct World<const D: usize> {
 pub(crate) struct Tally {
     /// Collisions of two balls.
     pub collisions: u64,
-    /// Sum over collisions of (place of one as seen from the other) . (momentum given to it), and over hits of walls of (place of
+    /// Sum over collisions of (position of one as seen from the other) . (momentum given to it), and over hits of walls of (position of
     /// the centre as seen from the wall) . (momentum given to the ball).
     pub virial: f64,
     /// Length of all paths up to the last time that each was bent.
@@ -94,7 +94,7 @@ pub(crate) struct Followed<const D: usize> {
     pub id: u32,
     /// Its collisions with other balls.
     pub collisions: u64,
-    /// Time and place wherever the path was bent; places not a number part two pieces.
+    /// Time and position wherever the path was bent; positions not a number part two pieces.
     pub bends: Vec<(f64, [f64; D])>,
 }
 
@@ -158,7 +158,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Place and velocity of a ball at a time of the window, in the image of the box where it is.
+    /// Position and velocity of a ball at a time of the window, in the image of the box where it is.
     pub fn state(&self, ball: usize, time: f64) -> ([f64; D], [f64; D]) {
         if self.falls() {
             self.field.state::<Falling>(&self.balls[ball], time)
@@ -167,7 +167,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Place of a ball at a time of the window as if the box did not repeat.
+    /// Position of a ball at a time of the window as if the box did not repeat.
     pub fn unwrapped(&self, ball: usize, time: f64) -> [f64; D] {
         let (position, _) = self.state(ball, time);
         let image = &self.records[ball].image;
@@ -262,8 +262,8 @@ impl<const D: usize> World<D> {
         let mut extent = [self.low[axis], self.low[axis] + self.length[axis]];
         for wall in self.walls.iter().filter(|wall| wall.axis == axis) {
             match wall.facing {
-                Facing::Up => extent[0] = wall.place_at(time),
-                Facing::Down => extent[1] = wall.place_at(time),
+                Facing::Up => extent[0] = wall.position_at(time),
+                Facing::Down => extent[1] = wall.position_at(time),
                 Facing::Both => {}
             }
         }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Pairs of axes: momentum along one, moved along the other.
 const SHEARS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
 
-/// Helfand's moments (Phys. Rev. 119, 1960, 1): sums over the balls of momentum times place and of energy times place, as they
+/// Helfand's moments (Phys. Rev. 119, 1960, 1): sums over the balls of momentum times position and of energy times position, as they
 /// change. Balls carry both in flight, and in a collision both jump from centre to centre (Alder, Gass & Wainwright, J. Chem. Phys.
 /// 53, 1970, 3813). In a box that repeats they go on growing, as if it had no end.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

@@ -30,11 +30,11 @@ pub(crate) struct RegionSample {
 }
 
 impl<const D: usize> CountedRegion<D> {
-    /// True where the centre of a ball is in it. A place on a border between two regions is in one of them.
+    /// True where the centre of a ball is in it. A position on a border between two regions is in one of them.
     fn holds(&self, position: &[f64; D], period: &[f64; D]) -> bool {
         (0..D).all(|axis| {
-            let place = if period[axis] > 0.0 { position[axis].rem_euclid(period[axis]) } else { position[axis] };
-            self.from[axis] <= place && place < self.to[axis]
+            let wrapped = if period[axis] > 0.0 { position[axis].rem_euclid(period[axis]) } else { position[axis] };
+            self.from[axis] <= wrapped && wrapped < self.to[axis]
         })
     }
 

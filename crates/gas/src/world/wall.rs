@@ -23,8 +23,8 @@ const MOST_PASSAGES: usize = 6;
 pub(crate) struct Wall {
     pub axis: usize,
     pub facing: Facing,
-    /// Place, speed and acceleration at `since`, in the window.
-    pub place: f64,
+    /// Position, speed and acceleration at `since`, in the window.
+    pub position: f64,
     pub speed: f64,
     pub acceleration: f64,
     pub since: f64,
@@ -44,11 +44,11 @@ pub(crate) struct Wall {
 
 impl Wall {
     /// A wall at rest that reflects.
-    pub fn fixed(axis: usize, facing: Facing, place: f64) -> Self {
+    pub fn fixed(axis: usize, facing: Facing, position: f64) -> Self {
         Wall {
             axis,
             facing,
-            place,
+            position,
             speed: 0.0,
             acceleration: 0.0,
             since: 0.0,
@@ -61,18 +61,18 @@ impl Wall {
         }
     }
 
-    pub fn place_at(&self, time: f64) -> f64 {
+    pub fn position_at(&self, time: f64) -> f64 {
         let since = time - self.since;
-        self.place + self.speed * since + 0.5 * self.acceleration * since * since
+        self.position + self.speed * since + 0.5 * self.acceleration * since * since
     }
 
     pub fn speed_at(&self, time: f64) -> f64 {
         self.speed + self.acceleration * (time - self.since)
     }
 
-    /// Goes on from `time` at another speed, from the place it has there.
+    /// Goes on from `time` at another speed, from the position it has there.
     pub fn bend(&mut self, time: f64, speed: f64) {
-        (self.place, self.speed, self.since) = (self.place_at(time), speed, time);
+        (self.position, self.speed, self.since) = (self.position_at(time), speed, time);
         self.bends = self.bends.wrapping_add(1);
     }
 
@@ -87,7 +87,7 @@ impl Wall {
         }
         let start = ball.time.max(self.since);
         let (position, velocity) = field.state::<M>(ball, start);
-        let above = position[self.axis] - self.place_at(start);
+        let above = position[self.axis] - self.position_at(start);
         let rising = velocity[self.axis] - self.speed_at(start);
         let bending = if M::FALLS { field.gravity[self.axis] } else { 0.0 } - self.acceleration;
         let up = match self.facing {
@@ -115,7 +115,7 @@ impl Wall {
         let mut time = ball.time.max(self.since);
         let motion = |time: f64| {
             let (position, velocity) = field.state::<M>(ball, time);
-            (position[self.axis] - self.place, velocity[self.axis])
+            (position[self.axis] - self.position, velocity[self.axis])
         };
         let mut inside = motion(time).0.abs() < radius * (1.0 - 1e-9);
         for _ in 0..MOST_PASSAGES {

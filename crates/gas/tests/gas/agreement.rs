@@ -29,7 +29,7 @@ fn brute_at<const D: usize>(setup: &Setup<D>, coordinate: usize, moved: f64, tim
     brute
 }
 
-/// Largest difference of any two places.
+/// Largest difference of any two positions.
 fn apart<const D: usize>(setup: &Setup<D>, periodic: [bool; D], a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
     let differences = a.iter().zip(b).flat_map(|(a, b)| {
         (0..D).map(move |axis| {
@@ -66,8 +66,8 @@ pub fn agrees<const D: usize>(setup: Setup<D>) -> Result<(), TestCaseError> {
         advance(&mut gas, time);
         prop_assert_eq!(gas.collisions(), brute.collisions, "{:?}", method);
         prop_assert_eq!(gas.pairs_in_wells(), brute.bound.len() as u64, "{:?}", method);
-        let places: Vec<[f64; D]> = gas.states().into_iter().map(|(position, _)| position).collect();
-        let error = apart(&setup, periodic, &places, &brute.position);
+        let positions: Vec<[f64; D]> = gas.states().into_iter().map(|(position, _)| position).collect();
+        let error = apart(&setup, periodic, &positions, &brute.position);
         prop_assert!(error < bound, "{:?}: {} off, not {}", method, error, bound);
     }
     Ok(())
@@ -118,7 +118,7 @@ fn engine_and_list_have_the_same_bits_between_walls() {
 }
 
 /// Across periodic sides they agree to rounding errors.
-pub fn same_places<const D: usize>(setup: Setup<D>, time: f64) {
+pub fn same_positions<const D: usize>(setup: Setup<D>, time: f64) {
     let (engine, list) = both(setup.clone(), time);
     assert!(2 * engine.collisions() > engine.len() as u64, "only {} collisions", engine.collisions());
     assert_eq!(engine.collisions(), list.collisions());
@@ -129,11 +129,11 @@ pub fn same_places<const D: usize>(setup: Setup<D>, time: f64) {
 
 #[test]
 fn engine_and_list_agree_across_periodic_sides() {
-    same_places(Setup::<2>::fluid(150, 0.4), 1.0);
-    same_places(Setup::<3>::fluid(150, 0.3), 0.3);
+    same_positions(Setup::<2>::fluid(150, 0.4), 1.0);
+    same_positions(Setup::<3>::fluid(150, 0.3), 0.3);
     // Long ways across small boxes: balls meet in images that were not the nearest when they set out.
-    same_places(Setup::<2>::fluid(20, 0.02), 18.0);
-    same_places(Setup::<3>::fluid(30, 0.02), 10.0);
+    same_positions(Setup::<2>::fluid(20, 0.02), 18.0);
+    same_positions(Setup::<3>::fluid(30, 0.02), 10.0);
 }
 
 #[test]

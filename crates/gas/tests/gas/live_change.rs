@@ -66,11 +66,11 @@ fn balls_cross_a_partition_once_it_is_lifted() {
     }
     let mut gas = setup.build().unwrap();
     advance(&mut gas, 10.0);
-    assert!(gas.states().iter().all(|(place, _)| place[0] < 20.0));
+    assert!(gas.states().iter().all(|(position, _)| position[0] < 20.0));
     change(&mut gas, LiveChange::LiftPartition);
     assert!(LiveChange::LiftPartition.change(&mut gas).is_err());
     advance(&mut gas, 60.0);
-    assert!(gas.states().iter().filter(|(place, _)| place[0] > 20.0).count() > 15);
+    assert!(gas.states().iter().filter(|(position, _)| position[0] > 20.0).count() > 15);
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn a_piston_goes_where_its_pressure_drives_it() {
         scatter(&mut setup, 120, 1.0, 1.0, 5);
         setup.build().unwrap()
     };
-    let place = |pressure: Option<f64>| {
+    let position = |pressure: Option<f64>| {
         let mut gas = build();
         advance(&mut gas, 1.0);
         if let Some(pressure) = pressure {
@@ -92,10 +92,10 @@ fn a_piston_goes_where_its_pressure_drives_it() {
         assert!(ledger.balances.iter().all(|balance| balance.relative_error().abs() < 1e-9), "{ledger:?}");
         gas.wall(0, 1).unwrap()[0]
     };
-    let (freed, left, pressed) = (place(Some(0.0)), place(None), place(Some(20.0)));
+    let (freed, left, pressed) = (position(Some(0.0)), position(None), position(Some(20.0)));
     assert!(freed > left + 0.1 && left > pressed + 0.1, "{freed} {left} {pressed}");
     // The same pressure again changes nothing but rounding.
-    assert!((place(Some(4.8)) - left).abs() < 1e-6);
+    assert!((position(Some(4.8)) - left).abs() < 1e-6);
 }
 
 #[test]

@@ -11,8 +11,8 @@ fn a_moving_wall_reflects_at_twice_its_speed_less_the_balls() {
     assert_eq!(gas.states()[0].1, [2.0 * -0.75 - 1.3, 0.5]);
     // Met where ball and wall are at one time: 5.5 + 1.3 t = 10 - 0.75 t.
     let met = 4.5 / 2.05;
-    let place = 5.0 + 1.3 * met - 2.8 * (3.0 - met);
-    assert!((gas.states()[0].0[0] - place).abs() < 1e-12);
+    let position = 5.0 + 1.3 * met - 2.8 * (3.0 - met);
+    assert!((gas.states()[0].0[0] - position).abs() < 1e-12);
     assert!((gas.work() - 0.5 * 2.0 * (2.8_f64.powi(2) - 1.3_f64.powi(2))).abs() < 1e-12);
 }
 
@@ -38,8 +38,8 @@ fn a_piston_finds_its_balance_and_energy_is_kept() {
     let mut gas = setup.clone().build().unwrap();
     // Of the gas, of the piston, and in the outside pressure.
     let total = |gas: &corpuscle_gas::Gas<2>| {
-        let [place, speed] = gas.wall(0, 1).unwrap();
-        gas.energy() + 0.5 * mass * speed * speed + pressure * 10.0 * place
+        let [position, speed] = gas.wall(0, 1).unwrap();
+        gas.energy() + 0.5 * mass * speed * speed + pressure * 10.0 * position
     };
     let (start, energy) = (total(&gas), gas.energy());
     for step in 1..=40 {

@@ -1,6 +1,6 @@
 //! Balls with square wells.
 
-use crate::agreement::{agrees, same_bits, same_places};
+use crate::agreement::{agrees, same_bits, same_positions};
 use crate::common::{advance, bits, deepest, scatter};
 use crate::exactness::{independent_of_frames, saved_and_taken_back};
 use corpuscle_gas::{LiveChange, Method, Setup, Side};
@@ -108,9 +108,9 @@ fn engine_and_list_have_the_same_bits_between_walls() {
 
 #[test]
 fn engine_and_list_agree_across_periodic_sides() {
-    same_places(Setup::<2>::fluid(150, 0.4).well(1.0, 1.5), 0.8);
-    same_places(Setup::<3>::fluid(150, 0.3).well(0.7, 1.5), 0.25);
-    same_places(Setup::<3>::fluid(40, 0.02).well(1.0, 1.8), 4.0);
+    same_positions(Setup::<2>::fluid(150, 0.4).well(1.0, 1.5), 0.8);
+    same_positions(Setup::<3>::fluid(150, 0.3).well(0.7, 1.5), 0.25);
+    same_positions(Setup::<3>::fluid(40, 0.02).well(1.0, 1.8), 4.0);
 }
 
 /// Fluids with wells or steps, balls of one size or many, between walls or not.

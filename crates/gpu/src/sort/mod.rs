@@ -1,7 +1,7 @@
 //! Counting sort into cells, on the device: count, scan, scatter, and order within each cell.
 //!
 //! The model's own kernel counts: for each particle it adds 1 to [`CellSort::counts`] of its cell and writes
-//! [`CellSort::places`], the cell and what the count was before. [`CellSort::sort`] does the rest and leaves the counts at zero.
+//! [`CellSort::cell_slots`], the cell and what the count was before. [`CellSort::sort`] does the rest and leaves the counts at zero.
 //! Particles of one cell come in the order of their keys, so that the result is the same however the threads ran.
 
 use crate::{Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, THREADS, Task, storage};
@@ -33,7 +33,7 @@ crate::declare! {
         /// Particles of each cell.
         storage counts: [u32],
         /// The cell of each particle, and how many of that cell were counted before.
-        storage places: [[u32; 2]],
+        storage cell_slots: [[u32; 2]],
         /// First particle of each cell.
         storage start: [u32],
         /// The particles in sorted order.
@@ -51,7 +51,7 @@ pub struct CellSort {
     /// Particles of each cell: `u32`, atomic. Zero before the counting and after the sort.
     pub counts: wgpu::Buffer,
     /// The cell of each particle, and how many of that cell were counted before: two `u32`.
-    pub places: wgpu::Buffer,
+    pub cell_slots: wgpu::Buffer,
     /// First particle of each cell in sorted order, one entry more than cells: `u32`.
     pub start: wgpu::Buffer,
     /// The particles in sorted order: `u32`.
@@ -111,7 +111,7 @@ impl CellSort {
         let memory = Memory {
             sizes: sizes.clone(),
             counts: storage::<u32>(gpu, "counts of cells", cells)?,
-            places: storage::<[u32; 2]>(gpu, "places in cells", particles)?,
+            cell_slots: storage::<[u32; 2]>(gpu, "slots in cells", particles)?,
             start: storage::<u32>(gpu, "starts of cells", cells + 1)?,
             order: storage::<u32>(gpu, "order", particles)?,
             totals: storage::<u32>(gpu, "totals of blocks", sort_blocks(cells))?,
@@ -129,8 +129,8 @@ impl CellSort {
             scatter: task!("sort_scatter"),
             tidy: task!("sort_tidy"),
         };
-        let Memory { counts, places, start, order, .. } = memory;
-        Ok(Self { counts, places, start, order, tasks })
+        let Memory { counts, cell_slots, start, order, .. } = memory;
+        Ok(Self { counts, cell_slots, start, order, tasks })
     }
 
     /// Sorts what was counted.

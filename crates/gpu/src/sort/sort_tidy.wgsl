@@ -13,11 +13,11 @@ fn main(@builtin(global_invocation_id) thread: vec3u) {
     for (var next = first + 1u; next < end; next++) {
         let particle = order[next];
         let key = keys[particle];
-        var place = next;
-        while place > first && keys[order[place - 1u]] > key {
-            order[place] = order[place - 1u];
-            place -= 1u;
+        var index = next;
+        while index > first && keys[order[index - 1u]] > key {
+            order[index] = order[index - 1u];
+            index -= 1u;
         }
-        order[place] = particle;
+        order[index] = particle;
     }
 }

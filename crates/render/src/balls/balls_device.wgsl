@@ -11,7 +11,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var ball = BallInstance(0.0, 0.0, 0.0, -1.0, 0.0);
     if i < particles.count && particles.all[i].volume > 0.0 {
         let particle = particles.all[i];
-        let position = (vec3f(1.0, 1.0, settings.raise) * particle.place + settings.shift) / settings.unit;
+        let position = (vec3f(1.0, 1.0, settings.raise) * particle.position + settings.shift) / settings.unit;
         let value = select(particle.depth, particle.temperature, settings.value == TEMPERATURE);
         ball = BallInstance(position.x, position.y, position.z, settings.radius * particle.spacing / settings.unit, value);
     }

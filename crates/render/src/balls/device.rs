@@ -131,7 +131,7 @@ mod tests {
         let colours = ColourTable { low: 0.0, high: 30.0, colours: vec![[0, 0, 255], [255, 0, 0]] };
         let mut all: Vec<DeviceParticle> = (0..300_u32)
             .map(|id| DeviceParticle {
-                place: [(id % 10) as f32, (id / 10 % 10) as f32, (id / 100) as f32],
+                position: [(id % 10) as f32, (id / 10 % 10) as f32, (id / 100) as f32],
                 spacing: 0.6 + 0.001 * id as f32,
                 depth: 0.1 * id as f32,
                 temperature: 30.0 - 0.1 * id as f32,
@@ -152,7 +152,7 @@ mod tests {
             let mut of_device = painter.balls_of_device(&gpu, &stage, &style, &particles, shows).unwrap();
             let there = all.iter().filter(|particle| particle.volume > 0.0);
             let balls = there.map(|particle| {
-                let position: [f64; 3] = std::array::from_fn(|axis| corner[axis] + f64::from(particle.place[axis]));
+                let position: [f64; 3] = std::array::from_fn(|axis| corner[axis] + f64::from(particle.position[axis]));
                 let number = if value == ValueOfDevice::Depth { particle.depth } else { particle.temperature };
                 ([position[0], position[1], raise * position[2]], 0.5 * f64::from(particle.spacing), f64::from(number))
             });

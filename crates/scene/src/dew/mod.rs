@@ -88,8 +88,8 @@ pub enum Scheme {
     /// latent heat released.
     #[default]
     Physical,
-    /// As patented (CN106650064B): relative humidity diffuses, arithmetic mean of diffusivities, no latent heat.
-    Paper,
+    /// As patented (CN106650064B): particles of air condense, relative humidity diffuses, arithmetic mean of diffusivities, no latent heat.
+    ParticleCondensation,
 }
 
 /// Humid air. Give exactly one of `relative_humidity`, `dew_point_c` and `mixing_ratio`.
@@ -156,7 +156,7 @@ pub enum Treatment {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Transport {
-    /// Mean of the conductivities (in scheme `paper` diffusivities) of two particles. Left out: as the scheme has it.
+    /// Mean of the conductivities (in scheme `particle-condensation` diffusivities) of two particles. Left out: as the scheme has it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conductivity_mean: Option<Mean>,
     /// What of the vapour diffuses. Left out: as the scheme has it.
@@ -212,7 +212,7 @@ pub struct Drops {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub advancing_angle_deg: Option<f64>,
     /// Friction that holds a drop, over the force with which the air presses it on the solid (mu_f), in place of advancing and receding angles. Left
-    /// out: angles (`physical`), 1.3e-4 (`paper`).
+    /// out: angles (`physical`), 1.3e-4 (`particle-condensation`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<f64>,
     /// Viscosity of water, Pa s, by which a drop that slides is braked.

@@ -16,7 +16,7 @@ impl ModelScene for Dew {
         let is_physical = self.scheme == Scheme::Physical;
         let (mean, humidity) = match self.scheme {
             Scheme::Physical => (Mean::Harmonic, HumidityTransport::MassFraction),
-            Scheme::Paper => (Mean::Arithmetic, HumidityTransport::RelativeHumidity),
+            Scheme::ParticleCondensation => (Mean::Arithmetic, HumidityTransport::RelativeHumidity),
         };
         self.transport.conductivity_mean.get_or_insert(mean);
         self.transport.humidity.get_or_insert(humidity);

@@ -3,10 +3,10 @@
 use super::Triangles;
 use std::collections::HashMap;
 
-/// The triangles with corners at the same place taken for one, without those of no area, wound alike and outward; and what
+/// The triangles with corners at the same position taken for one, without those of no area, wound alike and outward; and what
 /// was put right.
 pub(super) fn solid(read: Triangles) -> Result<(Triangles, Vec<String>), String> {
-    refuse_what_is_no_place(&read)?;
+    refuse_invalid_corners(&read)?;
     let mut notes = Vec::new();
     let mut mesh = welded(&read);
     let flat = read.triangles.len() - mesh.triangles.len();
@@ -35,7 +35,7 @@ pub(super) fn solid(read: Triangles) -> Result<(Triangles, Vec<String>), String>
     Ok((mesh, notes))
 }
 
-fn refuse_what_is_no_place(read: &Triangles) -> Result<(), String> {
+fn refuse_invalid_corners(read: &Triangles) -> Result<(), String> {
     if let Some(at) = read.corners.iter().position(|corner| corner.iter().any(|x| !x.is_finite())) {
         return Err(format!(
             "corner {at} (counted from 0) is at {:?}: each coordinate must be a finite number",
@@ -51,14 +51,14 @@ fn refuse_what_is_no_place(read: &Triangles) -> Result<(), String> {
     Ok(())
 }
 
-/// Corners at the same place become one; triangles with two corners at one place are left out.
+/// Corners at the same position become one; triangles with two corners at one position are left out.
 fn welded(read: &Triangles) -> Triangles {
     let mut known: HashMap<[u64; 3], u32> = HashMap::new();
     let mut corners = Vec::new();
     let one_of = |corner: &[f64; 3]| {
         // -0 is 0.
-        let place = corner.map(|x| (x + 0.0).to_bits());
-        *known.entry(place).or_insert_with(|| {
+        let position = corner.map(|x| (x + 0.0).to_bits());
+        *known.entry(position).or_insert_with(|| {
             corners.push(*corner);
             corners.len() as u32 - 1
         })

@@ -125,8 +125,8 @@ fn add(primitive: &Primitive, buffers: &[Cow<[u8]>], matrix: &Matrix, found: &mu
         ));
     }
     let first = found.corners.len() as u32;
-    let places = reader.read_positions().ok_or(cut_off)?;
-    found.corners.extend(places.map(|[x, y, z]| {
+    let corners = reader.read_positions().ok_or(cut_off)?;
+    found.corners.extend(corners.map(|[x, y, z]| {
         let [x, y, z, _] = moved(matrix, [x.into(), y.into(), z.into(), 1.0]);
         [x, y, z]
     }));

@@ -50,7 +50,7 @@ impl Mesh {
         read::read(path, unit)
     }
 
-    /// A mesh of corners in m and triangles of three of them each. `name` is what messages call it. Corners at the same place
+    /// A mesh of corners in m and triangles of three of them each. `name` is what messages call it. Corners at the same position
     /// are taken for one, triangles without area left out, and triangles wound against their neighbours turned; see
     /// [`Mesh::notes`].
     ///

@@ -11,7 +11,7 @@ const MOST_ROWS: usize = 6 * MOST_TRIANGLES;
 /// A row of a PLY file: a corner, a face, or something else.
 #[derive(Default)]
 struct Row {
-    place: [Option<f64>; 3],
+    position: [Option<f64>; 3],
     corners: Option<Vec<u32>>,
 }
 
@@ -22,9 +22,9 @@ impl PropertyAccess for Row {
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
         match name {
-            "x" => self.place[0] = number(&value),
-            "y" => self.place[1] = number(&value),
-            "z" => self.place[2] = number(&value),
+            "x" => self.position[0] = number(&value),
+            "y" => self.position[1] = number(&value),
+            "z" => self.position[2] = number(&value),
             "vertex_indices" | "vertex_index" => self.corners = value.to_u32_list(),
             _ => return PropertyAccessResult::Ignored,
         }
@@ -59,7 +59,7 @@ pub(super) fn read(content: &[u8]) -> Result<Triangles, String> {
         refuse_too_many(if name == "vertex" { element.count / 3 } else { element.count })?;
         let rows = parser.read_payload_for_element(&mut reader, element, &header).map_err(|error| wrong(&error))?;
         for (at, row) in rows.into_iter().enumerate() {
-            match (name.as_str(), row.place, row.corners) {
+            match (name.as_str(), row.position, row.corners) {
                 ("vertex", [Some(x), Some(y), Some(z)], _) => found.corners.push([x, y, z]),
                 ("vertex", ..) => return Err(format!("vertex {at} (counted from 0) has no x, y and z")),
                 ("face", _, Some(corners)) => {

@@ -130,17 +130,17 @@ impl<'a> Cells<'a> {
         let volume = self.cell_volume() / 8.0;
         let mut cell = Cell { index, fraction: 0.0, area: 0.0, centre: [0.0; 3], is_cut: true };
         for octant in 0..8 {
-            let place: [f64; 3] = std::array::from_fn(|axis| {
+            let position: [f64; 3] = std::array::from_fn(|axis| {
                 let side = if octant >> axis & 1 == 0 { -0.25 } else { 0.25 };
                 middle[axis] + side * self.sides[axis]
             });
-            let nearest = self.solid.nearest_of_its_own(place);
+            let nearest = self.solid.nearest_of_its_own(position);
             let width = 0.5 * (0..3).map(|axis| (self.sides[axis] * nearest.normal[axis]).abs()).sum::<f64>();
             let inside = (0.5 - nearest.distance / width).clamp(0.0, 1.0) / 8.0;
             cell.fraction += inside;
             cell.area += volume / width * (1.0 - nearest.distance.abs() / width).max(0.0);
             for axis in 0..3 {
-                cell.centre[axis] += inside * place[axis];
+                cell.centre[axis] += inside * position[axis];
             }
         }
         let fraction = cell.fraction;
@@ -148,15 +148,15 @@ impl<'a> Cells<'a> {
         cell
     }
 
-    /// Puts the place of a part inside the solid, where its centre of mass is not: in a hollow or at a sharp edge. What is too
-    /// thin for any of the places tried becomes nothing.
+    /// Puts the position of a part inside the solid, where its centre of mass is not: in a hollow or at a sharp edge. What is too
+    /// thin for any of the positions tried becomes nothing.
     pub fn move_inside(&self, cell: &mut Cell) {
-        let distance = |place: [f64; 3]| self.solid.nearest_of_its_own(place).distance;
+        let distance = |position: [f64; 3]| self.solid.nearest_of_its_own(position).distance;
         if distance(cell.centre) < 0.0 {
             return;
         }
         let middle = self.middle(cell.index);
-        let places = (0..CENTRE_SAMPLES_PER_SIDE.pow(3))
+        let positions = (0..CENTRE_SAMPLES_PER_SIDE.pow(3))
             .map(|at| {
                 [
                     at % CENTRE_SAMPLES_PER_SIDE,
@@ -168,9 +168,9 @@ impl<'a> Cells<'a> {
                 let step = |axis: usize| (f64::from(at[axis]) + 0.5) / f64::from(CENTRE_SAMPLES_PER_SIDE) - 0.5;
                 std::array::from_fn(|axis| middle[axis] + step(axis) * self.sides[axis])
             });
-        let deepest = places.map(|place| (place, distance(place))).min_by(|a, b| a.1.total_cmp(&b.1));
+        let deepest = positions.map(|position| (position, distance(position))).min_by(|a, b| a.1.total_cmp(&b.1));
         match deepest {
-            Some((place, distance)) if distance < 0.0 => cell.centre = place,
+            Some((position, distance)) if distance < 0.0 => cell.centre = position,
             _ => (cell.fraction, cell.area) = (0.0, 0.0),
         }
     }

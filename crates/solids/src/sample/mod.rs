@@ -1,7 +1,7 @@
 //! Particles that stand for a solid.
 //!
 //! The box round the solid is divided into equal cells of about the spacing. A cell that the surface cuts keeps the part
-//! inside: its volume, and its centre of mass for a place. Parts of less than half a cell join a neighbour. So a box is
+//! inside: its volume, and its centre of mass for a position. Parts of less than half a cell join a neighbour. So a box is
 //! sampled as a perfect lattice with its first layer half a spacing below the surface, and a sum over the particles is a
 //! second-order integral over any solid.
 
@@ -24,7 +24,7 @@ pub enum Depth {
 /// Particles that stand for a solid. Those of so many layers are among those of the whole solid, with the same volumes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Samples {
-    /// Places, m; all inside the solid.
+    /// Positions, m; all inside the solid.
     pub positions: Vec<[f64; 3]>,
     /// Volumes, m³; those of all particles of a solid sum to its volume.
     pub volumes: Vec<f64>,

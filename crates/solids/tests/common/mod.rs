@@ -99,13 +99,13 @@ impl Soup {
         self.triangles.extend(other.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
     }
 
-    fn places(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
+    fn triangle_corners(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
         self.triangles.iter().map(|triangle| triangle.map(|corner| self.corners[corner as usize]))
     }
 
     /// Distance to the nearest triangle, all of them tried.
     pub fn distance(&self, point: [f64; 3]) -> f64 {
-        self.places().map(|triangle| to_triangle(point, triangle)).fold(f64::INFINITY, f64::min)
+        self.triangle_corners().map(|triangle| to_triangle(point, triangle)).fold(f64::INFINITY, f64::min)
     }
 
     /// Solid angle of the surface over that of all directions: 1 inside, 0 outside (van Oosterom & Strackee, IEEE Transactions on
@@ -117,7 +117,7 @@ impl Soup {
             let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
             2.0 * dot(a, cross(b, c)).atan2(below)
         };
-        self.places().map(angle).sum::<f64>() / (4.0 * PI)
+        self.triangle_corners().map(angle).sum::<f64>() / (4.0 * PI)
     }
 
     /// The mesh as files of all formats.
@@ -136,7 +136,7 @@ impl Soup {
 
     fn ascii_stl(&self) -> Vec<u8> {
         let mut text = String::from("solid\n");
-        for triangle in self.places() {
+        for triangle in self.triangle_corners() {
             text += "facet normal 0 0 0\nouter loop\n";
             triangle.iter().for_each(|[x, y, z]| text += &format!("vertex {x} {y} {z}\n"));
             text += "endloop\nendfacet\n";
@@ -149,7 +149,7 @@ impl Soup {
         let mut bytes = b"solid ".to_vec();
         bytes.resize(80, b' ');
         bytes.extend((self.triangles.len() as u32).to_le_bytes());
-        for triangle in self.places() {
+        for triangle in self.triangle_corners() {
             bytes.extend([0; 12]);
             bytes.extend(triangle.as_flattened().iter().flat_map(|&x| (x as f32).to_le_bytes()));
             bytes.extend([0; 2]);
@@ -190,15 +190,15 @@ impl Soup {
     }
 
     fn data(&self) -> Vec<u8> {
-        let places = self.corners.as_flattened().iter().flat_map(|&x| (x as f32).to_le_bytes());
-        places.chain(self.triangles.as_flattened().iter().flat_map(|corner| corner.to_le_bytes())).collect()
+        let positions = self.corners.as_flattened().iter().flat_map(|&x| (x as f32).to_le_bytes());
+        positions.chain(self.triangles.as_flattened().iter().flat_map(|corner| corner.to_le_bytes())).collect()
     }
 
     fn json(&self, uri: &str) -> String {
         let (corners, indices) = (self.corners.len(), 3 * self.triangles.len());
-        let (places, all) = (12 * corners, 12 * corners + 4 * indices);
+        let (positions, all) = (12 * corners, 12 * corners + 4 * indices);
         format!(
-            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],"buffers":[{{{uri}"byteLength":{all}}}],"bufferViews":[{{"buffer":0,"byteLength":{places}}},{{"buffer":0,"byteOffset":{places},"byteLength":{}}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":{corners},"type":"VEC3","min":[-9,-9,-9],"max":[9,9,9]}},{{"bufferView":1,"componentType":5125,"count":{indices},"type":"SCALAR"}}]}}"#,
+            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],"buffers":[{{{uri}"byteLength":{all}}}],"bufferViews":[{{"buffer":0,"byteLength":{positions}}},{{"buffer":0,"byteOffset":{positions},"byteLength":{}}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":{corners},"type":"VEC3","min":[-9,-9,-9],"max":[9,9,9]}},{{"bufferView":1,"componentType":5125,"count":{indices},"type":"SCALAR"}}]}}"#,
             4 * indices
         )
     }

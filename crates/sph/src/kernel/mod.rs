@@ -28,7 +28,7 @@ pub trait SmoothingKernel<const D: usize>: Copy + Send + Sync {
     /// -dW/dr over r of the weight of densities, 1/m^(D+2), from the square of the distance.
     fn fall_over_r(&self, r_squared: f64) -> f64;
 
-    /// Weight of pressure, -dW/dr, 1/m^(D+1): times the unit vector from i to j it is the gradient with respect to the place of i.
+    /// Weight of pressure, -dW/dr, 1/m^(D+1): times the unit vector from i to j it is the gradient with respect to the position of i.
     fn slope(&self, r: f64) -> f64;
 
     /// Weight of diffusion, 1/m^(D+2): the sum of V_j (A_j - A_i) times it is the Laplacian of A.

@@ -5,7 +5,8 @@ use corpuscle_dew::{LiveChange, SourceChange as Source};
 use corpuscle_scene::dew::{self, AirInflow};
 use corpuscle_scene::{Axis, Dew};
 
-const SCHEMES: &[(&str, &str)] = &[("physical", "\"physical\""), ("paper (as patented)", "\"paper\"")];
+const SCHEMES: &[(&str, &str)] =
+    &[("physical", "\"physical\""), ("particle condensation (as patented)", "\"particle-condensation\"")];
 const TREATMENTS: &[(&str, &str)] = &[
     ("density correction", "\"density-correction\""),
     ("ghost particles", "\"ghost\""),

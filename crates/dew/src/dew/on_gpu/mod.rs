@@ -3,10 +3,13 @@
 mod measured;
 mod on_device;
 
-use super::{Dew, State};
+use super::Dew;
 use crate::faces::deepest_outside;
-use crate::gpu::{BatchResult, Crossed, GpuSolver, MOST_FANS};
+use crate::gpu::{BatchResult, Crossed, GpuInputs, GpuSolver};
 use crate::room::Face;
+use crate::shared::MOST_FANS;
+use crate::solids::upload::SolidInputs;
+use crate::state::State;
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming, wait_for};
 use corpuscle_model::{Advance, AdvanceObserver, CpuOnly, Glance, GpuModel, Model, ModelError};
 use on_device::FrameRequest;
@@ -106,8 +109,39 @@ impl Dew {
         self.open_gpu_with(gpu, if come == 0 { count } else { count + count / 2 + come + SPARE_ROOM })
     }
 
+    /// What the GPU needs of the model.
+    fn gpu_inputs(&self) -> GpuInputs<'_> {
+        let solids = SolidInputs {
+            solids: &self.solids,
+            conduction: &self.conduction,
+            contact: &self.contact,
+            ghosts: &self.ghosts,
+            held_to: &self.held_to,
+            air: &self.air,
+            scale: &self.scale,
+            mean: self.settings.mean,
+        };
+        GpuInputs {
+            settings: &self.settings,
+            air: &self.air,
+            room: &self.room,
+            scale: &self.scale,
+            solids,
+            sources: &self.sources,
+            surfaces: &self.surfaces,
+            fans: &self.fans,
+            open_sides: &self.open_sides,
+            rest_density: self.rest_density,
+            latent_heat: self.latent_heat,
+            shortest_step: self.shortest_step(),
+            most_in_a_step: self.most_in_a_step(),
+            refuses_fast: self.wetting.is_some(),
+            is_closed: self.is_closed(),
+        }
+    }
+
     fn open_gpu_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
-        let mut solver = GpuSolver::new(gpu, room, self)?;
+        let mut solver = GpuSolver::new(gpu, room, &self.gpu_inputs())?;
         solver.upload(&self.state, &self.evaporation);
         solver.batches = solver.batches.after(self.gpu_solver.take().map(|before| before.batches));
         self.gpu_solver = Some(solver);
@@ -132,7 +166,7 @@ impl Dew {
     }
 
     /// Particles that can come in a step: a layer before each inlet, and outside open sides as many as stand there in all.
-    pub(crate) fn most_in_a_step(&self) -> usize {
+    fn most_in_a_step(&self) -> usize {
         let counts = self.room.counts(self.scale.spacing);
         let apart = self.room.apart(self.scale.spacing);
         let of_face = |(number, face): (usize, &Face)| {

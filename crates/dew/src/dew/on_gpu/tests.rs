@@ -128,7 +128,7 @@ fn air_by_id(dew: &Dew) -> Vec<Particle> {
     air
 }
 
-/// Largest differences: of particles, place over the spacing, velocity (m/s), temperature (K), vapour and fog (parts of the mass); of
+/// Largest differences: of particles, position over the spacing, velocity (m/s), temperature (K), vapour and fog (parts of the mass); of
 /// particles of solids, temperature (K) and water over the most on any.
 fn differences(a: &Dew, b: &Dew) -> [f64; 7] {
     let most = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);

@@ -135,7 +135,7 @@ mod tests {
         let room = Room { low: [0.0; 3], high: [0.03, 0.04, 0.05], faces: [[Face::Wall; 2]; 3] };
         let solid = Solid::of_shape(shape, Pose::new(position, degrees));
         let mut body = Body::sampled(solid.clone(), spacing, GLASS, 280.0, false).unwrap();
-        let is_inside = |place: &[f64; 3]| (0..3).all(|axis| (0.0..room.high[axis]).contains(&place[axis]));
+        let is_inside = |position: &[f64; 3]| (0..3).all(|axis| (0.0..room.high[axis]).contains(&position[axis]));
         let kept: Vec<usize> = (0..body.positions.len()).filter(|&at| is_inside(&body.positions[at])).collect();
         body.positions = kept.iter().map(|&at| body.positions[at]).collect();
         let solids = Solids::new(&[body], &room, &Scale::new(spacing, corpuscle_scene::KernelName::Mueller), 0.15);

@@ -6,9 +6,10 @@ pub(crate) mod upload;
 
 use super::Solids;
 use super::wall::{self, WallLayer};
-use crate::bodies::Body;
+use crate::constants::ITERATIONS;
 use crate::humid_air::ZERO_CELSIUS;
 use crate::room::Room;
+use crate::solids::bodies::Body;
 use areas::AreaSampler;
 use corpuscle_scene::Table;
 use serde::{Deserialize, Serialize};
@@ -121,9 +122,6 @@ impl Surroundings {
         }
     }
 }
-
-/// Iterations of Newton's method for the temperature of a surface, after a first estimate: enough for one that glowing surroundings warm by hundreds of K.
-pub(crate) const ITERATIONS: usize = 4;
 
 impl Conditions {
     /// Heat flux into the surface, W/m2, and by how much it falls with the temperature of the particle behind it, W/(m2 K).

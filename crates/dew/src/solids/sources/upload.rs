@@ -1,10 +1,9 @@
 //! Heat sources of solids on the GPU, for `dew_sources.wgsl`.
 
-use crate::dew::Dew;
-use crate::gpu::origin::Origin;
-use crate::gpu::shared::{self, Memory};
 use crate::humid_air::ZERO_CELSIUS;
-use crate::solids::sources::{BodySources, ParticleShare, STEFAN_BOLTZMANN, SurfacePart, Surroundings};
+use crate::origin::Origin;
+use crate::shared::{self, Memory};
+use crate::solids::sources::{BodySources, HeatSources, ParticleShare, STEFAN_BOLTZMANN, SurfacePart, Surroundings};
 use corpuscle_gpu::{Gpu, GpuError, from_pair, read};
 use corpuscle_scene::Table;
 
@@ -21,8 +20,7 @@ pub(crate) struct GpuSources {
 
 impl GpuSources {
     /// None where no solid has any. Their values over time, W or K from the ambient air's temperature, come after those of `values`.
-    pub fn new(dew: &Dew, origin: Origin, values: &mut Vec<[f64; 2]>) -> Option<Self> {
-        let sources = &dew.sources;
+    pub fn new(sources: &HeatSources, origin: Origin, values: &mut Vec<[f64; 2]>) -> Option<Self> {
         if sources.shares.is_empty() {
             return None;
         }

@@ -116,7 +116,7 @@ impl GpuInputs<'_> {
             pushes: storage::<[f32; 4]>(gpu, "pushes of obstacles", pushed)?,
             partials: storage::<Partial>(gpu, "sums of groups", groups)?,
             counts: sort.counts.clone(),
-            places: sort.places.clone(),
+            places: sort.cell_slots.clone(),
             keys,
             start: sort.start.clone(),
             order: sort.order.clone(),

@@ -14,7 +14,7 @@ fn particle_of(cell: u32) -> DeviceParticle {
         return particle;
     }
     let place = places[cell];
-    particle.place = vec3f(place.at, place.bed + own.depth + own.shift);
+    particle.position = vec3f(place.at, place.bed + own.depth + own.shift);
     particle.spacing = sqrt(area);
     particle.velocity = vec3f(own.velocity, 0.0);
     particle.depth = own.depth;

@@ -1,7 +1,7 @@
 //! Entries that are being moved to their buckets.
 //!
-//! An entry goes to any of millions of buckets: its place in the ring is in no cache, nor is the chunk there. So it waits while other
-//! events are handled; what it needs is prefetched, first the place in the ring, then the chunk.
+//! An entry goes to any of millions of buckets: its slot in the ring is in no cache, nor is the chunk there. So it waits while other
+//! events are handled; what it needs is prefetched, first the slot in the ring, then the chunk.
 
 use super::{Queue, Slip};
 use crate::memory;

@@ -19,7 +19,7 @@ const PER_BUCKET: [f64; 2] = [8.0, 3.0];
 /// Entries in a chunk; what is left of its cache line links it.
 const ROOM: usize = 7;
 
-/// A place in the chunks is the number of a chunk and, in the last bits, of an entry; a full chunk's place has all of these set.
+/// An index in the chunks is the number of a chunk and, in the last bits, of an entry; a full chunk's index has all of these set.
 const BITS: u32 = 3;
 const FULL: u32 = ROOM as u32;
 
@@ -35,7 +35,7 @@ struct Slip {
 #[repr(C, align(64))]
 struct Chunk {
     slips: [Slip; ROOM],
-    /// Place after the last entry of the chunk before, which is full.
+    /// Index after the last entry of the chunk before, which is full.
     next: u32,
 }
 
@@ -120,12 +120,12 @@ impl Queue {
         }
         self.in_ring += 1;
         let slot = bucket as usize & (self.ring.len() - 1);
-        let place = self.ring[slot];
-        if place & FULL != FULL {
-            self.chunks[(place >> BITS) as usize].slips[(place & FULL) as usize] = slip;
-            self.ring[slot] = place + 1;
+        let index = self.ring[slot];
+        if index & FULL != FULL {
+            self.chunks[(index >> BITS) as usize].slips[(index & FULL) as usize] = slip;
+            self.ring[slot] = index + 1;
         } else {
-            self.ring[slot] = self.new_chunk(slip, place);
+            self.ring[slot] = self.new_chunk(slip, index);
         }
     }
 
@@ -176,9 +176,9 @@ impl Queue {
             self.bring_in(events);
         }
         let slot = self.front_bucket as usize & (self.ring.len() - 1);
-        let mut place = std::mem::replace(&mut self.ring[slot], NONE);
-        while place != NONE {
-            let (at, len) = (place >> BITS, place & FULL);
+        let mut index = std::mem::replace(&mut self.ring[slot], NONE);
+        while index != NONE {
+            let (at, len) = (index >> BITS, index & FULL);
             let chunk = self.chunks[at as usize];
             for slip in &chunk.slips[..len as usize] {
                 let event = &events[slip.ball as usize];
@@ -189,7 +189,7 @@ impl Queue {
             self.in_ring -= len as usize;
             self.chunks[at as usize].next = self.free;
             self.free = at;
-            place = chunk.next;
+            index = chunk.next;
         }
         self.front.sort_unstable_by(|a, b| b.cmp(a));
         true
@@ -227,20 +227,20 @@ impl Queue {
     /// Prefetches the memory of the last chunk of a bucket in the ring.
     #[inline(always)]
     pub fn ask_for_chunk(&self, bucket: u64) {
-        let place = self.ring[bucket as usize & (self.ring.len() - 1)];
-        if place != NONE {
-            memory::prefetch(&self.chunks[(place >> BITS) as usize]);
+        let index = self.ring[bucket as usize & (self.ring.len() - 1)];
+        if index != NONE {
+            memory::prefetch(&self.chunks[(index >> BITS) as usize]);
         }
     }
 
     /// Calls `visit` with ball and number of the entries in a bucket of the ring.
     #[inline(always)]
     pub fn each_in(&self, bucket: u64, mut visit: impl FnMut(u32, u32)) {
-        let mut place = self.ring[bucket as usize & (self.ring.len() - 1)];
-        while place != NONE {
-            let chunk = &self.chunks[(place >> BITS) as usize];
-            chunk.slips[..(place & FULL) as usize].iter().for_each(|slip| visit(slip.ball, slip.stamp));
-            place = chunk.next;
+        let mut index = self.ring[bucket as usize & (self.ring.len() - 1)];
+        while index != NONE {
+            let chunk = &self.chunks[(index >> BITS) as usize];
+            chunk.slips[..(index & FULL) as usize].iter().for_each(|slip| visit(slip.ball, slip.stamp));
+            index = chunk.next;
         }
     }
 

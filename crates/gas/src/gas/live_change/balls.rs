@@ -18,18 +18,18 @@ const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
 const FIRST_STREAM: u64 = 16;
 
 impl<const D: usize> Gas<D> {
-    /// Puts balls at free places at random, like the others of their set, with velocities after Maxwell's law at the temperature now.
+    /// Puts balls at free positions at random, like the others of their set, with velocities after Maxwell's law at the temperature now.
     pub(super) fn add_balls(&mut self, set: usize, count: usize) -> Result<(), ModelError> {
         let like = self.first_of(set)?;
         let temperature = self.temperature();
         let mut random = ChaCha8Rng::seed_from_u64(self.setup.seed);
         random.set_stream(FIRST_STREAM + self.live.added + self.live.removed);
         let kind = self.mover.world().balls[like].kind;
-        let places = self.free_places(self.mover.world().radius(like), count, &mut random)?;
+        let positions = self.free_positions(self.mover.world().radius(like), count, &mut random)?;
         self.come_to_now();
         self.mover.begin_window();
         let thermal = (self.setup.boltzmann * temperature / self.mover.world().mass(like)).sqrt();
-        for position in places {
+        for position in positions {
             let mut velocity: [f64; D] = std::array::from_fn(|_| thermal * normal(&mut random));
             let world = self.mover.world_mut();
             if world.field.is_sheared() {
@@ -115,9 +115,9 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world();
         let (mass, gravity) = (world.mass(ball), world.field.gravity);
         let Ball { position, velocity, .. } = world.balls[ball];
-        let place =
+        let unwrapped =
             |axis: usize| position[axis] + f64::from(world.records[ball].image[axis]) * world.field.period[axis];
-        let height: f64 = (0..D).map(|axis| -gravity[axis] * place(axis)).sum();
+        let height: f64 = (0..D).map(|axis| -gravity[axis] * unwrapped(axis)).sum();
         let energy = sign * mass * (0.5 * velocity.iter().map(|v| v * v).sum::<f64>() + height);
         // The ledger counts gravity's push on all balls that there are from the start on.
         let pushed: f64 = gravity.iter().sum::<f64>() * world.time();
@@ -125,8 +125,8 @@ impl<const D: usize> Gas<D> {
         self.live.book(energy, momentum);
     }
 
-    /// Places in the box where balls of a radius overlap nothing.
-    fn free_places(&self, radius: f64, count: usize, random: &mut ChaCha8Rng) -> Result<Vec<[f64; D]>, ModelError> {
+    /// Positions in the box where balls of a radius overlap nothing.
+    fn free_positions(&self, radius: f64, count: usize, random: &mut ChaCha8Rng) -> Result<Vec<[f64; D]>, ModelError> {
         let world = self.mover.world();
         let largest = world.kinds.iter().map(|kind| kind.radius).fold(radius, f64::max);
         let balls = world.balls.len() + count;
@@ -144,19 +144,19 @@ impl<const D: usize> Gas<D> {
             })
         };
         let divides = world.walls.iter().filter(|wall| wall.present && wall.facing == Facing::Both);
-        let divides: Vec<_> = divides.map(|wall| (wall.axis, wall.place)).collect();
-        let is_free = |place: &[f64; D], hash: &Hash<D>| {
-            divides.iter().all(|&(axis, at)| (place[axis] - at).abs() > RADIUS_MARGIN * radius)
-                && hash.is_clear(place, RADIUS_MARGIN * radius)
+        let divides: Vec<_> = divides.map(|wall| (wall.axis, wall.position)).collect();
+        let is_free = |position: &[f64; D], hash: &Hash<D>| {
+            divides.iter().all(|&(axis, at)| (position[axis] - at).abs() > RADIUS_MARGIN * radius)
+                && hash.is_clear(position, RADIUS_MARGIN * radius)
         };
-        let mut places = Vec::with_capacity(count);
+        let mut positions = Vec::with_capacity(count);
         for _ in 0..count {
-            let place = (0..MAX_PLACEMENT_TRIES).map(|_| anywhere(random)).find(|place| is_free(place, &hash));
+            let position = (0..MAX_PLACEMENT_TRIES).map(|_| anywhere(random)).find(|position| is_free(position, &hash));
             let none = || ModelError::Setup(format!("there is no room for {count} more balls"));
-            let place = place.ok_or_else(none)?;
-            hash.add(place, radius);
-            places.push(place);
+            let position = position.ok_or_else(none)?;
+            hash.add(position, radius);
+            positions.push(position);
         }
-        Ok(places)
+        Ok(positions)
     }
 }

@@ -35,7 +35,7 @@ pub enum LiveChange {
         /// The pressure from now on.
         pressure: f64,
     },
-    /// A piston is taken hold of, dragged to a place, and held there.
+    /// A piston is taken hold of, dragged to a position, and held there.
     DragPiston {
         /// The wall.
         wall: [usize; 2],
@@ -49,7 +49,7 @@ pub enum LiveChange {
     },
     /// The temperature is held at this, above 0, by scaling the velocities from time to time; `None`: no longer.
     HoldTemperature(Option<f64>),
-    /// Balls come in at free places at random, like the others of their set, with velocities after Maxwell's law at the temperature now.
+    /// Balls come in at free positions at random, like the others of their set, with velocities after Maxwell's law at the temperature now.
     AddBalls {
         /// The set, from 0.
         set: usize,

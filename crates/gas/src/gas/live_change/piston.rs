@@ -34,7 +34,7 @@ impl Grip {
 }
 
 impl<const D: usize> Gas<D> {
-    /// Takes hold of a piston and drags it to a place, where it is held.
+    /// Takes hold of a piston and drags it to a position, where it is held.
     pub(super) fn drag(&mut self, [axis, end]: [usize; 2], to: f64) -> Result<(), ModelError> {
         let number = self.piston([axis, end])?;
         self.check_room(axis, end, to)?;
@@ -43,7 +43,7 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world_mut();
         let (now, time) = (world.now, world.time());
         let wall = &mut world.walls[number];
-        let displacement = to - wall.place_at(now);
+        let displacement = to - wall.position_at(now);
         let speed = (DRAG_SPEED * energy.sqrt()).copysign(displacement);
         let held = self.live.grips.iter().position(|grip| grip.wall == number);
         let free = held.map(|held| self.live.grips.swap_remove(held));
@@ -85,8 +85,8 @@ impl<const D: usize> Gas<D> {
         let wall = &mut world.walls[number];
         wall.bend(now, 0.0);
         // Rounding must not push it into a ball.
-        if (wall.place - to).abs() < 1e-9 * to.abs().max(1e-300) && wall.facing == Facing::Up {
-            wall.place = wall.place.min(to);
+        if (wall.position - to).abs() < 1e-9 * to.abs().max(1e-300) && wall.facing == Facing::Up {
+            wall.position = wall.position.min(to);
         }
         self.mover.wall_changed(number);
     }
@@ -112,7 +112,7 @@ impl<const D: usize> Gas<D> {
             .ok_or_else(|| ModelError::Setup("there is no piston at this end of the box".into()))
     }
 
-    /// Refuses a place at which the balls would have too little room.
+    /// Refuses a position at which the balls would have too little room.
     fn check_room(&self, axis: usize, end: usize, to: f64) -> Result<(), ModelError> {
         let world = self.mover.world();
         let now = world.in_window(self.shown);

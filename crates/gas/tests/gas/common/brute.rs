@@ -12,7 +12,7 @@ pub struct Brute<const D: usize> {
     pub mass: Vec<f64>,
     pub size: [f64; D],
     pub periodic: [bool; D],
-    /// Place and speed of each side.
+    /// Position and speed of each side.
     pub walls: [[[f64; 2]; 2]; D],
     pub time: f64,
     pub collisions: u64,
@@ -91,9 +91,9 @@ impl<const D: usize> Brute<D> {
             }
             for axis in (0..D).filter(|&axis| !self.periodic[axis]) {
                 for end in 0..2 {
-                    let [place, speed] = self.walls[axis][end];
+                    let [position, speed] = self.walls[axis][end];
                     let side = [1.0, -1.0][end];
-                    let gap = side * (self.position[a][axis] - place) - self.radius[a];
+                    let gap = side * (self.position[a][axis] - position) - self.radius[a];
                     let closing = -side * (self.velocity[a][axis] - speed);
                     if closing > 0.0 && gap.max(0.0) / closing < first {
                         (first, next) = (gap.max(0.0) / closing, Next::Wall(a, axis, end));

@@ -62,7 +62,7 @@ impl Tasks {
             sizes,
             groups: storage::<u32>(gpu, "groups of water", SPLAT_COUNT as usize + 1)?,
             counts: sort.counts.clone(),
-            cell_slots: sort.places.clone(),
+            cell_slots: sort.cell_slots.clone(),
             keys,
             start: sort.start.clone(),
             order: sort.order.clone(),

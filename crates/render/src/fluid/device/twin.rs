@@ -67,7 +67,7 @@ fn send(gpu: &Gpu, set: &ParticleSet, particles: &DeviceParticles) {
     let Values::Scalar(depths) = &set.columns[0].values else { panic!("depths are numbers") };
     let mut sent = vec![DeviceParticle::default(); 9];
     sent.extend((0..set.len()).rev().map(|index| DeviceParticle {
-        place: [0, 1, 2].map(|axis| (set.position[index][axis] - particles.origin[axis]) as f32),
+        position: [0, 1, 2].map(|axis| (set.position[index][axis] - particles.origin[axis]) as f32),
         spacing: 2.0 * set.radius[index] as f32,
         velocity: set.velocity[index].map(|along| along as f32),
         depth: depths[index] as f32,

@@ -24,7 +24,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let particle = seen.all[order[i]];
-    let position = vec3f(particle.place.xy, water.raise * particle.place.z) + water.shift;
+    let position = vec3f(particle.position.xy, water.raise * particle.position.z) + water.shift;
     // As wide as the water that it stands for where particles are sparse.
     let width = sqrt(particle.volume / max(particle.depth, 1e-12));
     sites[i] = vec4f(position, clamp(width, particle.spacing, WIDEST * particle.spacing));

@@ -2,13 +2,13 @@
 #import water_device
 
 fn cell_of(particle: DeviceParticle) -> u32 {
-    if !(particle.volume > 0.0) || !(abs(particle.place.z) < NO_HEIGHT) {
+    if !(particle.volume > 0.0) || !(abs(particle.position.z) < NO_HEIGHT) {
         return of_ground(water) + 1u;
     }
     if !(particle.depth > 0.0) {
         return of_ground(water);
     }
-    let cell = cell_at(water, particle.place.xy + water.shift.xy);
+    let cell = cell_at(water, particle.position.xy + water.shift.xy);
     return cell.y * water.columns + cell.x;
 }
 

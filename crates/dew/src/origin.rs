@@ -1,8 +1,8 @@
 //! Particles of air from the host's numbers to the shaders' and back.
 
-use super::shared::{self, COMING, FACE_BITS, IDLE, INSIDE, LEAVING, OUTSIDE, ROLE_MASK, STILL};
 use crate::air::{Particle, Role};
 use crate::room::Room;
+use crate::shared::{self, COMING, FACE_BITS, IDLE, INSIDE, LEAVING, OUTSIDE, ROLE_MASK, STILL};
 use corpuscle_gpu::{from_pair, to_pair};
 
 /// Where the shaders count from.
@@ -20,17 +20,17 @@ impl Origin {
         [0, 1, 2].map(|axis| 0.5 * (self.room.low[axis] + self.room.high[axis]))
     }
 
-    /// A place from the middle of the room.
-    pub fn relative(&self, place: [f64; 3]) -> [f32; 3] {
+    /// A position from the middle of the room.
+    pub fn relative(&self, position: [f64; 3]) -> [f32; 3] {
         let middle = self.middle();
-        [0, 1, 2].map(|axis| (place[axis] - middle[axis]) as f32)
+        [0, 1, 2].map(|axis| (position[axis] - middle[axis]) as f32)
     }
 
     /// The same for a particle: rounding must not put it over a high face.
-    fn relative_inside(&self, place: [f64; 3]) -> [f32; 3] {
-        let (high, relative) = (self.relative(self.room.high), self.relative(place));
+    fn relative_inside(&self, position: [f64; 3]) -> [f32; 3] {
+        let (high, relative) = (self.relative(self.room.high), self.relative(position));
         [0, 1, 2].map(|axis| {
-            let is_inside = place[axis] < self.room.high[axis];
+            let is_inside = position[axis] < self.room.high[axis];
             if is_inside { relative[axis].min(high[axis].next_down()) } else { relative[axis] }
         })
     }
@@ -38,7 +38,7 @@ impl Origin {
     pub fn to_gpu(self, particle: &Particle) -> shared::Particle {
         let narrow = |vector: [f64; 3]| vector.map(|along| along as f32);
         shared::Particle {
-            place: self.relative_inside(particle.position),
+            position: self.relative_inside(particle.position),
             density: particle.density as f32,
             velocity: narrow(particle.velocity),
             fog: particle.fog as f32,
@@ -55,9 +55,9 @@ impl Origin {
 
     pub fn to_host(self, particle: &shared::Particle) -> Particle {
         let wide = |vector: [f32; 3]| vector.map(f64::from);
-        let (place, middle) = (wide(particle.place), self.middle());
+        let (position, middle) = (wide(particle.position), self.middle());
         Particle {
-            position: [0, 1, 2].map(|axis| place[axis] + middle[axis]),
+            position: [0, 1, 2].map(|axis| position[axis] + middle[axis]),
             velocity: wide(particle.velocity),
             acceleration: wide(particle.acceleration),
             spreading: wide(particle.spreading),

@@ -1,8 +1,8 @@
 //! The solids of a scene, made ready: where they are, what they are made of, and the particles that stand for them.
 
+use super::sources::{BodySources, Outside, Surroundings};
+use super::wall::WallLayer;
 use crate::humid_air::ZERO_CELSIUS;
-use crate::solids::sources::{BodySources, Outside, Surroundings};
-use crate::solids::wall::WallLayer;
 use corpuscle_model::{ModelError, SolidShape};
 use corpuscle_scene::dew::{self, Dew, Shape};
 use corpuscle_scene::{SceneError, Series, Table};
@@ -175,7 +175,7 @@ pub fn shapes(dew: &Dew, folder: &Path) -> Result<Vec<SolidShape>, BodyError> {
 
 /// The shape of a solid.
 pub(crate) fn shape(solid: Solid) -> SolidShape {
-    SolidShape { bounds: solid.bounds(), distance: Arc::new(move |place| solid.signed_distance(place)) }
+    SolidShape { bounds: solid.bounds(), distance: Arc::new(move |position| solid.signed_distance(position)) }
 }
 
 fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Body, BodyError> {
@@ -358,10 +358,10 @@ const FREE_SAMPLES_PER_SIDE: f64 = 64.0;
 /// Refuses a box without a position half a spacing from all solids.
 fn refuse_a_full_box(bodies: &[Body], dew: &Dew) -> Result<(), BodyError> {
     let counts = dew.size_m.map(|length| (length / dew.spacing_m).clamp(1.0, FREE_SAMPLES_PER_SIDE) as u32);
-    let place = |axis: usize, at: u32| dew.size_m[axis] * (f64::from(at) + 0.5) / f64::from(counts[axis]);
+    let coordinate = |axis: usize, at: u32| dew.size_m[axis] * (f64::from(at) + 0.5) / f64::from(counts[axis]);
     let is_free = |point: [f64; 3]| bodies.iter().all(|body| body.solid.signed_distance(point) >= 0.5 * dew.spacing_m);
-    let mut places = (0..counts[2])
+    let mut positions = (0..counts[2])
         .flat_map(|z| (0..counts[1]).flat_map(move |y| (0..counts[0]).map(move |x| [x, y, z])))
-        .map(|[x, y, z]| [place(0, x), place(1, y), place(2, z)]);
-    if places.any(is_free) { Ok(()) } else { Err(BodyError::NoRoom { size: dew.size_m }) }
+        .map(|[x, y, z]| [coordinate(0, x), coordinate(1, y), coordinate(2, z)]);
+    if positions.any(is_free) { Ok(()) } else { Err(BodyError::NoRoom { size: dew.size_m }) }
 }

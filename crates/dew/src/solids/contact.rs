@@ -1,8 +1,8 @@
 //! Which air is within reach of which sites of solids.
 
+use super::{Searched, Site, distance_squared};
 use crate::air::{Arrangement, Scale};
 use crate::settings::WallTreatment;
-use crate::solids::{Searched, Site, distance_squared};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -34,7 +34,7 @@ struct Block {
 /// A neighbour on the other side.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Pair {
-    /// For a site the place of the air in the arrangement; for air the number of the site.
+    /// For a site the index of the air in the arrangement; for air the number of the site.
     pub other: u32,
     /// Distance, m.
     pub r: f64,
@@ -77,7 +77,7 @@ impl Contact {
 
     /// Makes the lists of the air from those of the sites.
     fn turn(&mut self, arrangement: &Arrangement) {
-        let particles = arrangement.place_of.len();
+        let particles = arrangement.index_of.len();
         self.count.clear();
         self.count.resize(particles, 0);
         let particle = |pair: &Pair| {
@@ -120,10 +120,10 @@ impl Contact {
         self.blocks.get(site / SITES_PER_BLOCK).map_or(&[], |block| block.of(site % SITES_PER_BLOCK))
     }
 
-    /// From a place to a site, m.
-    pub fn offset(&self, site: usize, place: [f64; 3]) -> [f64; 3] {
-        let position = self.sites[site].position;
-        [0, 1, 2].map(|axis| position[axis] - place[axis])
+    /// From a position to a site, m.
+    pub fn offset(&self, site: usize, position: [f64; 3]) -> [f64; 3] {
+        let of_site = self.sites[site].position;
+        [0, 1, 2].map(|axis| of_site[axis] - position[axis])
     }
 
     /// Bytes held.
@@ -144,10 +144,10 @@ impl Block {
                 self.start.push(self.pairs.len() as u32);
                 continue;
             }
-            for place in arrangement.cells.ranges_within(site.position, reach).flatten() {
-                let r_squared = distance_squared(arrangement.at(place), site.position);
+            for index in arrangement.cells.ranges_within(site.position, reach).flatten() {
+                let r_squared = distance_squared(arrangement.at(index), site.position);
                 if r_squared < reach * reach {
-                    self.pairs.push(Pair { other: place as u32, r: r_squared.sqrt() });
+                    self.pairs.push(Pair { other: index as u32, r: r_squared.sqrt() });
                 }
             }
             self.start.push(self.pairs.len() as u32);

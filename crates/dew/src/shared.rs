@@ -70,33 +70,33 @@ corpuscle_gpu::declare! {
         /// A ghost particle beyond a side that air passes.
         pub const GHOST_PARTICLE_BEYOND: u32 = 64;
         /// Steps between two searches for air of low utility.
-        pub const TURN: u32 = crate::utility::UTILITY_STEPS as u32;
+        pub const TURN: u32 = crate::constants::UTILITY_STEPS as u32;
         /// Groups that share the particles when they are summed up for gauges.
         pub const MEASURING_GROUPS: u32 = 64;
         /// Fans that there is room for: 48 KiB of the 64 that every device has for numbers of this kind.
         pub const MOST_FANS: u32 = 1024;
         /// Distance beyond a face that air passes at which it is removed, in smoothing lengths.
-        pub const BEYOND: f32 = crate::faces::BEYOND as f32;
+        pub const BEYOND: f32 = crate::constants::BEYOND as f32;
         /// Depth of the layer before an outlet whose mean velocity air beyond takes, in spacings.
-        pub const OUTLET_LAYER: f32 = crate::faces::OUTLET_LAYER as f32;
+        pub const OUTLET_LAYER: f32 = crate::constants::OUTLET_LAYER as f32;
         /// Acceleration limits the time step: this times the root of spacing over acceleration.
-        pub const ACCELERATION_LIMIT: f32 = crate::dew::ACCELERATION_LIMIT as f32;
+        pub const ACCELERATION_LIMIT: f32 = crate::constants::ACCELERATION_LIMIT as f32;
         /// Part of the longest step for which no diffusion overshoots its neighbours.
-        pub const DIFFUSION_LIMIT: f32 = crate::dew::DIFFUSION_LIMIT as f32;
+        pub const DIFFUSION_LIMIT: f32 = crate::constants::DIFFUSION_LIMIT as f32;
         /// Coefficient of vapour in the virtual temperature.
-        pub const VAPOUR_LIGHTNESS: f32 = crate::dew::VAPOUR_LIGHTNESS as f32;
+        pub const VAPOUR_LIGHTNESS: f32 = crate::humid_air::VAPOUR_LIGHTNESS as f32;
         /// Damping of particles that approach each other.
         pub const DAMPING: f32 = crate::air::DAMPING as f32;
         /// Strength of the virtual force of solids, over density and the square of the speed of sound.
-        pub const STRENGTH: f32 = crate::walls::STRENGTH as f32;
+        pub const STRENGTH: f32 = crate::constants::STRENGTH as f32;
         /// Its range, in spacings.
-        pub const RANGE: f32 = crate::walls::RANGE as f32;
+        pub const RANGE: f32 = crate::constants::RANGE as f32;
         /// Largest eigenvalue of a tensor of normalisation.
         pub const MAX_EIGENVALUE: f32 = crate::normalisation::MAX_EIGENVALUE as f32;
         /// Displacement after which distances from solids are compared, in smoothing lengths.
-        pub const PROBE_STEP: f32 = crate::utility::PROBE_STEP as f32;
+        pub const PROBE_STEP: f32 = crate::constants::PROBE_STEP as f32;
         /// Iterations of Newton's method for the temperature of a surface.
-        pub const ITERATIONS: u32 = crate::solids::sources::ITERATIONS as u32;
+        pub const ITERATIONS: u32 = crate::constants::ITERATIONS as u32;
         /// Constants of the formula of saturation, Bolton 1980: its factor, and °C.
         pub const BOLTON_B: f32 = crate::humid_air::B as f32;
         /// See above.
@@ -270,7 +270,7 @@ corpuscle_gpu::declare! {
         /// A particle of air; temperature, K, and vapour, part of the mass, are counted from the ambient air's.
         pub struct Particle {
             /// m.
-            pub place: [f32; 3],
+            pub position: [f32; 3],
             /// kg/m3.
             pub density: f32,
             /// m/s.
@@ -300,7 +300,7 @@ corpuscle_gpu::declare! {
         /// A particle as it lies in memory: devices read sixteen bytes at a time where they are uploaded so, and a [`Particle`] member by member.
         pub struct Packed {
             /// See [`Particle`].
-            pub place_and_density: [f32; 4],
+            pub position_and_density: [f32; 4],
             /// See [`Particle`].
             pub velocity_and_fog: [f32; 4],
             /// See [`Particle`].
@@ -316,7 +316,7 @@ corpuscle_gpu::declare! {
         /// Values of a particle that its neighbours read: a search reads only the first part of those out of reach.
         pub struct PackedColumn {
             /// m; pressure over the square of the density, Pa m6/kg2.
-            pub place_and_pressure: [f32; 4],
+            pub position_and_pressure: [f32; 4],
             /// m/s; K.
             pub velocity_and_temperature: [f32; 4],
             /// Diagonal of the tensor of normalisation; vapour, part of the mass.
@@ -370,7 +370,7 @@ corpuscle_gpu::declare! {
         /// A particle of a solid, its ghost particle, a ghost sample, or, with its pairs and capacity alone, a cell of a wall behind a solid.
         pub struct Site {
             /// m.
-            pub place: [f32; 3],
+            pub position: [f32; 3],
             /// Over that of a particle of air.
             pub volume: f32,
             /// Conductivity with which the air is warmed, W/(m K).
@@ -633,7 +633,7 @@ corpuscle_gpu::declare! {
         /// Particles in each cell.
         storage counts: [AtomicU32],
         /// The cell of each particle, and its number there.
-        storage places: [[u32; 2]],
+        storage cell_slots: [[u32; 2]],
         /// Numbers of particles, by which those of a cell are put in order.
         storage keys: [u32],
         /// The first particle of each cell.
@@ -697,7 +697,7 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::tasks::pieces;
+    use crate::gpu::pieces;
     use corpuscle_gpu::Buffers;
     use corpuscle_scene::KernelName;
     use corpuscle_sph::kernel::Kernel;
