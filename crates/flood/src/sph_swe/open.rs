@@ -1,13 +1,14 @@
 //! How a flood is set up.
 
+use super::boundaries::{EdgeRule, EdgeRules};
 use super::change::Overrides;
-use super::edges::{EdgeRule, EdgeRules};
+use super::density::h_of_density;
 use super::falling::Falling;
 use super::maps::Maps;
 use super::obstacles::Obstacles;
 use super::particle::Particle;
 use super::seeding::Body;
-use super::solver::{SphSwe, h_of_density};
+use super::solver::SphSwe;
 use super::surroundings::Surroundings;
 use super::{SphSweFlood, State};
 use crate::friction::Roughness;

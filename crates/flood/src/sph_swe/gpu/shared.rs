@@ -40,19 +40,19 @@ corpuscle_gpu::declare! {
         /// Most of a kernel that walls are taken to cover.
         pub const MOST_COVERED: f32 = super::super::obstacles::MOST_COVERED as f32;
         /// Distance beyond an edge at which particles are removed, in smoothing lengths.
-        pub const BEYOND: f32 = super::super::exchange::BEYOND as f32;
+        pub const BEYOND: f32 = super::super::boundaries::outflow::BEYOND as f32;
         /// Lowest Froude number of a particle that has left.
-        pub const SLOWEST_LEAVING: f32 = super::super::exchange::SLOWEST_LEAVING as f32;
+        pub const SLOWEST_LEAVING: f32 = super::super::boundaries::outflow::SLOWEST_LEAVING as f32;
         /// How far from an edge a particle has a ghost particle, in reaches.
-        pub const GHOST_MARGIN: f32 = super::super::arrangement::GHOST_MARGIN as f32;
+        pub const GHOST_MARGIN: f32 = super::super::neighbours::GHOST_MARGIN as f32;
         /// Support of the sampling kernel over that of the scheme's.
         pub const SAMPLED: f32 = super::super::SAMPLED as f32;
         /// Share of a position's surroundings that water must cover for the position to be wet.
-        pub const COVERED: f32 = super::super::sampler::COVERED as f32;
+        pub const COVERED: f32 = super::super::sampling::COVERED as f32;
         /// Radius of a search for the water at a position over the reach of the particles there.
-        pub const SEARCH_MARGIN: f32 = super::super::sampler::SEARCH_MARGIN as f32;
+        pub const SEARCH_MARGIN: f32 = super::super::sampling::SEARCH_MARGIN as f32;
         /// Largest depth at a position over that of the deepest particle near it.
-        pub const DEEPER: f32 = super::super::sampler::DEEPER as f32;
+        pub const DEEPER: f32 = super::super::sampling::DEEPER as f32;
         /// Threads of a group that samples positions of gauges.
         pub const GAUGE_GROUP: u32 = 64;
         /// Threads of the group that spawns particles: more than [`SPAWN_CANDIDATES`] would only wait.

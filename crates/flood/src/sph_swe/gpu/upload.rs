@@ -1,16 +1,18 @@
 //! Uploads of the data of a run.
 
 use super::MAX_SPAWN_REQUESTS;
-use super::gauges::MOST_ROWS;
-use super::maps::MAX_MAP_TIMES;
-use super::obstacles::GpuObstacles;
 use super::shared::{
     Column, Drop, MapCell, Memory, OPEN, PERIODIC, Packed, Parameters, Partial, Shown, SpawnRequest, Status, WALL,
 };
-use super::{ground, zones};
 use crate::friction::Roughness;
-use crate::sph_swe::edges::EdgeRule;
+use crate::sph_swe::boundaries::EdgeRule;
 use crate::sph_swe::falling::Falling;
+use crate::sph_swe::friction::upload::roughness;
+use crate::sph_swe::gauges::on_gpu::MOST_ROWS;
+use crate::sph_swe::ground::upload::nodes;
+use crate::sph_swe::inflow::upload::zones;
+use crate::sph_swe::maps::on_gpu::MAX_MAP_TIMES;
+use crate::sph_swe::obstacles::upload::GpuObstacles;
 use crate::sph_swe::particle::Particle;
 use crate::sph_swe::surroundings::Surroundings;
 use crate::zone::Source;
@@ -95,12 +97,12 @@ impl GpuInputs<'_> {
         let level = terrain.height(bounds.centre()[0], bounds.centre()[1]);
         let origin = Origin { centre: bounds.centre(), level };
         let mut parameters = self.parameters(origin);
-        let nodes = ground::nodes(terrain, origin, &mut parameters);
-        let rough = ground::roughness(self.roughness, bounds, origin, &mut parameters);
+        let nodes = nodes(terrain, origin, &mut parameters);
+        let rough = roughness(self.roughness, bounds, origin, &mut parameters);
         let farthest = self.scheme.largest_smoothing * self.h;
         let obstacles = GpuObstacles::new(obstacles, origin, farthest);
         (parameters.walls, parameters.outlines) = (obstacles.grid, obstacles.outlines_grid);
-        let (words, zones) = zones::words(self.sources, origin);
+        let (words, zones) = zones(self.sources, origin);
         let status = storage::<Status>(gpu, "status", 1)?;
         let keys = storage::<u32>(gpu, "numbers of particles", count)?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
@@ -148,7 +150,7 @@ impl GpuInputs<'_> {
 
 /// Where the shaders count from, in model coordinates: single precision has some 7 digits, which are not to be spent on the place of the whole.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Origin {
+pub(in crate::sph_swe) struct Origin {
     pub centre: [f64; 2],
     pub level: f64,
 }

@@ -2,7 +2,11 @@
 //!
 //! Boundary particles fill them, have mass and push (Akinci et al. 2012). Beyond that no particle stays inside: one that a step takes in is put back to the wall.
 
+mod impulses;
+mod push;
 mod sites;
+#[cfg(feature = "gpu")]
+pub(super) mod upload;
 
 pub(crate) use sites::{Site, Sites};
 

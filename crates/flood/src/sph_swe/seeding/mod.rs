@@ -5,8 +5,8 @@
 
 mod density;
 
-use super::arrangement::Arrangement;
-use super::edges::EdgeRules;
+use super::boundaries::EdgeRules;
+use super::neighbours::Arrangement;
 use super::obstacles::Obstacles;
 use super::particle::Particle;
 use corpuscle_sph::kernel::CubicSpline;
