@@ -8,13 +8,14 @@ use corpuscle_gpu::{
     COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, Kernel as GpuKernel, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots,
     THREADS, Task, sort_blocks, wgpu,
 };
-use corpuscle_sph::kernel::{KERNEL_PIECE, Kernel};
+use corpuscle_sph::kernel::{CUBIC_SPLINE_SHAPE, KERNEL_PIECE, Kernel};
 
 /// Pieces that the shaders import, but for the smoothing kernel.
 const LIBRARY: ShaderLibrary<'_> = &[
     SUMS_BEFORE,
     COMPENSATED_SUMS,
     GROUP_REDUCTION,
+    CUBIC_SPLINE_SHAPE,
     ("sph_common", include_str!("sph_common.wgsl")),
     ("sph_ground", include_str!("../ground/sph_ground.wgsl")),
     ("friction_rate", include_str!("../../friction/friction_rate.wgsl")),
