@@ -1,13 +1,14 @@
 //! What a scene says of the water at the start as functions of the position in model coordinates, m: numbers, expressions, rasters.
 
-use crate::setup::{is_inside, setup};
+use crate::error::setup;
+use crate::polygon::is_inside;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Field, Flood as Settings, StartVelocity, Water};
 use corpuscle_terrain::{RasterField, Terrain};
 use std::path::Path;
 
 /// A function of the position in model coordinates, m.
-pub(crate) type OfPosition<'a, T> = Box<dyn Fn(f64, f64) -> T + Sync + 'a>;
+pub type OfPosition<'a, T> = Box<dyn Fn(f64, f64) -> T + Sync + 'a>;
 
 /// An expression is tried in so many positions at most.
 const MOST_TRIALS: usize = 250_000;

@@ -1,7 +1,8 @@
 //! The spacing of particles that is taken where a scene gives none.
 
-use crate::setup::{initial_water, load, setup};
-use crate::voronoi;
+use crate::error::setup;
+use crate::initial_water::{self, initial_water};
+use crate::series::load;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Edge, Flood as Settings, Series};
 use corpuscle_terrain::Terrain;
@@ -75,7 +76,7 @@ fn wet_area(settings: &Settings, terrain: &Terrain, folder: &Path, until: f64) -
     if settings.rain.is_some() {
         return Ok(east * north);
     }
-    let bodies = voronoi::of_scene(settings, terrain, folder)?;
+    let bodies = initial_water::of_scene(settings, terrain, folder)?;
     let highest = highest_level(settings, folder, 0.0, until)?;
     let grid = terrain.map_grid();
     let stride = ((grid.columns * grid.rows) as f64 / MOST_SAMPLES as f64).sqrt().ceil().max(1.0) as usize;

@@ -1,6 +1,6 @@
 //! Places where water comes in, is held, or goes out.
 
-use crate::setup::is_inside;
+use crate::polygon::is_inside;
 use corpuscle_scene::Table;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

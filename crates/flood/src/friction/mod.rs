@@ -1,6 +1,6 @@
 //! Laws of bed friction, for both schemes: after Manning, Chezy, or in proportion to the velocity.
 
-use crate::setup::setup;
+use crate::error::setup;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Flood as Settings, Friction, LARGEST_MANNING, LandUse, Manning};
 use corpuscle_terrain::{RasterField, Terrain};

@@ -2,7 +2,7 @@
 
 use super::clip::{ring_within, surroundings};
 use super::{Outline, Outlines, shapefile};
-use crate::limits::check_inside;
+use crate::extent::{check_inside, is_beside};
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Circle, Flood as Settings, Obstacle, read_bytes, read_text};
 use corpuscle_terrain::{Bounds, Polygon, Terrain, polygons_of_geojson};
@@ -112,11 +112,7 @@ fn check_known(subject: &str, ring: &[[f64; 2]]) -> Result<(), ModelError> {
 
 pub(crate) fn check_overlap(subject: &str, ring: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
     check_known(subject, ring)?;
-    let bounds = terrain.bounds();
-    let beyond = |axis: usize, low: f64, high: f64| {
-        ring.iter().all(|corner| corner[axis] < low) || ring.iter().all(|corner| corner[axis] > high)
-    };
-    if beyond(0, bounds.x_min, bounds.x_max) || beyond(1, bounds.y_min, bounds.y_max) {
+    if is_beside(ring, terrain.bounds(), 0.0) {
         let [x, y] = ring[0];
         let what = format!(
             "{subject} lies outside the terrain: its first corner is at ({x}, {y}) m in the model's coordinates"

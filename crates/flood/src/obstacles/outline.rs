@@ -1,6 +1,6 @@
 //! Outlines of obstacles: which places are inside, and the way to the nearest wall.
 
-use crate::setup::is_inside;
+use crate::polygon::is_inside;
 use corpuscle_terrain::Bounds;
 
 /// A polygon of rings, each closed by itself; places that an odd number of them hold are inside.

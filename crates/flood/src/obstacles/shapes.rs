@@ -1,8 +1,8 @@
 //! Obstacles as solids, to be drawn.
 
 use super::Outline;
+use super::lines::lines;
 use super::open::polygons;
-use crate::voronoi::of_lines;
 use corpuscle_model::{ModelError, SolidShape};
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain;
@@ -63,8 +63,8 @@ pub struct LineWall {
 /// [`ModelError::Setup`] for one that lies outside the terrain.
 pub fn line_walls(flood: &Settings, terrain: &Terrain, high_enough: f64) -> Result<Vec<LineWall>, ModelError> {
     let cell = terrain.map_grid().cell_size().into_iter().fold(f64::INFINITY, f64::min);
-    let walls = of_lines(flood, terrain, cell)?;
-    Ok(walls.into_iter().flat_map(|wall| line_parts(wall.ends, wall.crest, terrain, cell, high_enough)).collect())
+    let lines = lines(flood, terrain, cell)?;
+    Ok(lines.into_iter().flat_map(|line| line_parts(line.ends, line.crest, terrain, cell, high_enough)).collect())
 }
 
 fn line_parts(

@@ -4,7 +4,8 @@
 
 use super::SphSweFlood;
 use crate::LiveChange;
-use crate::setup::{load, setup};
+use crate::error::setup;
+use crate::series::load;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Manning, Series, SphSwe, Table};
 use serde::{Deserialize, Serialize};

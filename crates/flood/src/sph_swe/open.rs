@@ -12,8 +12,8 @@ use super::solver::SphSwe;
 use super::surroundings::Surroundings;
 use super::{SphSweFlood, State};
 use crate::friction::Roughness;
-use crate::setup::{self, InitialWater};
-use crate::{fields, limits, obstacles, spacing};
+use crate::initial_water::{self, InitialWater};
+use crate::{error, fields, limits, obstacles, setup, spacing};
 use corpuscle_model::{Account, CompensatedSum, ModelError};
 use corpuscle_scene::{Block, Edge, Flood as Settings, Scheme, SmoothingForm, SphSwe as Parameters};
 use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
@@ -34,7 +34,7 @@ impl SphSweFlood {
     /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
     pub fn new(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         let ground = Arc::clone(&terrain);
-        let bodies = setup::initial_water(settings, &ground, folder)?;
+        let bodies = initial_water::initial_water(settings, &ground, folder)?;
         Self::with_water(settings, seed, folder, terrain, &bodies)
     }
 
@@ -49,7 +49,7 @@ impl SphSweFlood {
         terrain: Arc<Terrain>,
     ) -> Result<Self, ModelError> {
         let ground = Arc::clone(&terrain);
-        let bodies = setup::initial_water(settings, &ground, folder)?;
+        let bodies = initial_water::initial_water(settings, &ground, folder)?;
         Self::empty(settings, seed, folder, terrain, &bodies)
     }
 
@@ -79,7 +79,7 @@ impl SphSweFlood {
         bodies: &[InitialWater],
     ) -> Result<Self, ModelError> {
         if settings.scheme != Scheme::SphSwe {
-            return Err(setup::setup(
+            return Err(error::setup(
                 "this is the model of scheme sph-swe: corpuscle_flood::open chooses by the scene",
             ));
         }
@@ -89,7 +89,8 @@ impl SphSweFlood {
             .map_every_s
             .ok_or_else(|| ModelError::Setup("flood.map_every_s is open; resolve the scene's defaults first".into()))?;
         let spacing = spacing::resolve(flood, &terrain, folder)?;
-        let depth = *flood.spacing_depth_m.get_or_insert_with(|| setup::mean_depth(bodies, &terrain).unwrap_or(1.0));
+        let depth =
+            *flood.spacing_depth_m.get_or_insert_with(|| initial_water::mean_depth(bodies, &terrain).unwrap_or(1.0));
         let volume = spacing * spacing * depth;
         // Neighbours in the reach: pi h0^2 rho0 / m, whatever the depth. Table 1 has particles of 1 m3.
         let h = *flood.sph_swe.smoothing_length_m.get_or_insert(TABLE_1_SMOOTHING * volume.sqrt());
@@ -99,7 +100,7 @@ impl SphSweFlood {
         limits::check_count(flood, bodies, &terrain, spacing, volume)?;
         let edges = edge_rules(flood, &terrain)?;
         let reach = flood.sph_swe.largest_smoothing * h;
-        let closest = setup::closest(bodies, &terrain, spacing, volume);
+        let closest = initial_water::closest(bodies, &terrain, spacing, volume);
         let outlines = obstacles::open(flood, &terrain, folder, reach)?;
         let points = setup::point_gauges(flood, &terrain)?;
         let warnings = setup::warn_of_gauges(&points, flood, &outlines.all, &terrain);
@@ -250,7 +251,7 @@ fn edge_rules(scene: &Settings, terrain: &Terrain) -> Result<EdgeRules, ModelErr
         Edge::Open => Ok(EdgeRule::Open),
         Edge::Wall => Ok(EdgeRule::Wall),
         Edge::Periodic => Ok(EdgeRule::Periodic),
-        _ => Err(setup::setup("sides of this kind are for scheme voronoi: see [flood.edges]")),
+        _ => Err(error::setup("sides of this kind are for scheme voronoi: see [flood.edges]")),
     };
     let edges = &scene.edges;
     let rules = [rule(&edges.west)?, rule(&edges.east)?, rule(&edges.south)?, rule(&edges.north)?];
@@ -265,7 +266,7 @@ fn check_smoothing(parameters: &Parameters, h: f64, volume: f64) -> Result<(), M
     if own_depth < 1.0 || parameters.smoothing != SmoothingForm::Density {
         return Ok(());
     }
-    Err(setup::setup(format!(
+    Err(error::setup(format!(
         "flood.sph_swe.smoothing_length_m = {h} is so short for particles of {volume:.4} m3 that one alone would get deeper with each step; \
          give more than {:.4} ({:.4} gives as many neighbours as the paper has)",
         h * own_depth.sqrt(),

@@ -51,9 +51,6 @@ mod walls;
 mod water;
 
 pub use rain::RainFunction;
-pub(crate) use start::of_scene;
-pub use start::{Filling, OfPosition, StartWater};
-pub(crate) use walls::of_lines;
 
 use self::structures::{Flows, Structures};
 use crate::friction::Roughness;

@@ -12,13 +12,15 @@ use super::mesh::{Blocks, Grading, LINE, Layout, Mesh, NONE};
 use super::patch::Patch;
 use super::rain::{RainFunction, Soaked, Weather};
 use super::solver::Solver;
-use super::start::{self, StartWater};
+use super::start;
 use super::step::drops;
 use super::structures::Patches;
 use super::structures::Structures;
 use super::{Inflow, State, VoronoiFlood, domain, finer, walls};
+use crate::error::setup;
 use crate::friction::Roughness;
-use crate::setup::{self, setup};
+use crate::initial_water::{self, StartWater};
+use crate::setup;
 use crate::zone::Zone;
 use crate::{limits, obstacles, spacing};
 use corpuscle_model::{Account, ExactSum, ModelError};
@@ -65,7 +67,7 @@ impl VoronoiFlood {
     ) -> Result<Self, ModelError> {
         start::check_polygons(settings, &terrain)?;
         let ground = Arc::clone(&terrain);
-        let bodies = processes.agree(start::of_scene(settings, &ground, folder), ModelError::Setup)?;
+        let bodies = processes.agree(initial_water::of_scene(settings, &ground, folder), ModelError::Setup)?;
         Self::with_water_on(processes, settings, seed, folder, terrain, &bodies)
     }
 

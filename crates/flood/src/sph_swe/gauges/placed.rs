@@ -1,8 +1,8 @@
 //! Gauges that are placed while a flood runs.
 
+use crate::error::setup;
+use crate::extent::span;
 use crate::gauges::PointGauge;
-use crate::limits::span;
-use crate::setup::setup;
 use crate::sph_swe::SphSweFlood;
 use corpuscle_model::ModelError;
 

@@ -17,7 +17,7 @@ use super::patch::Patch;
 use super::solver::Solver;
 use super::structures::Patches;
 use super::{VoronoiFlood, rain::Weather};
-use crate::setup::setup;
+use crate::error::setup;
 use borders::Border;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Adaptive as Settings, TimeSteps};

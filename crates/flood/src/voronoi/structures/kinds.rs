@@ -1,8 +1,9 @@
 //! What lets water out by a rating, holds it at a level, or leads it from one point to another.
 
 use super::hydraulics::{Culvert, Law};
-use crate::limits::check_inside;
-use crate::setup::{load, setup};
+use crate::error::setup;
+use crate::extent::check_inside;
+use crate::series::load;
 use crate::zone::Zone;
 use corpuscle_model::{GaugeColumn, ModelError};
 use corpuscle_scene::{Flood as Settings, Link as LinkScene, LinkLaw, Series, Table};
