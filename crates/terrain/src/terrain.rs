@@ -2,12 +2,10 @@
 
 use crate::frame::Frame;
 use crate::surface::{GroundPatches, Surface};
-use crate::{Bounds, MapGrid, Raster, TerrainError, generated, ground, read_rasters};
-use corpuscle_scene::{NoData, Terrain as Scene};
+use crate::{Bounds, MapGrid, TerrainError};
 use corpuscle_simd::{LANES, Lanes, Level, Simd, SimdBase, dispatch};
 use rayon::prelude::*;
 use std::fmt;
-use std::path::Path;
 use std::sync::Arc;
 
 /// The ground: heights and slopes in model coordinates, and the grid on which maps are given back.
@@ -77,40 +75,6 @@ impl Terrain {
             valid: None,
             warnings: Vec::new(),
         }
-    }
-
-    /// The ground of a scene. `seed` makes generated ground, `folder` is what a relative path refers to.
-    ///
-    /// # Errors
-    /// A text that says what is wrong with the file or with the numbers of a generated terrain;
-    /// [`TerrainError::NotFetched`] for one that comes over a network, which this crate does not access.
-    pub fn open(scene: &Scene, seed: u64, folder: &Path) -> Result<Self, TerrainError> {
-        match scene {
-            Scene::File(scene) => {
-                let path = folder.join(&scene.path);
-                let raster = read_rasters(std::slice::from_ref(&path), scene.crs.as_deref(), None)?;
-                Self::from_raster(raster, &path, scene.no_data)
-            }
-            Scene::Tiles(scene) => {
-                let paths: Vec<_> = scene.paths.iter().map(|path| folder.join(path)).collect();
-                let raster = read_rasters(&paths, scene.crs.as_deref(), None)?;
-                Self::from_raster(raster, &paths[0], scene.no_data)
-            }
-            Scene::Fetch(_) => Err(TerrainError::NotFetched),
-            Scene::Valley(scene) => generated::valley(scene, seed),
-            Scene::RoughHills(scene) => generated::rough_hills(scene, seed),
-            Scene::Plane(scene) => generated::plane(scene),
-            Scene::Bump(scene) => generated::bump(scene),
-            Scene::Bowl(scene) => generated::bowl(scene),
-        }
-    }
-
-    /// Smooth ground through the heights of a raster; `name` is what messages call it.
-    ///
-    /// # Errors
-    /// A text that names it, where its heights are no ground or it spans too much of the Earth.
-    pub fn from_raster(raster: Raster, name: &Path, no_data: NoData) -> Result<Self, TerrainError> {
-        ground::from_raster(raster, name, no_data)
     }
 
     /// Smooth ground through heights on a grid: `height` gives them, m, at the centres of cells about `cell` wide

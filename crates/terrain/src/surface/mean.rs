@@ -13,7 +13,7 @@
 use super::blocks::{Node, Nodes, SIDE, STRIDE};
 use super::{Surface, along_lanes, hermite, hermite_lanes, patch, sides_of, weighted};
 use crate::Bounds;
-use crate::mean::Outline;
+use crate::outline::Outline;
 use corpuscle_simd::{LANES, Lanes, LanesExt, Level, Simd, SimdBase, dispatch};
 use std::ops::Range;
 
