@@ -2,6 +2,7 @@
 //!
 //! Lengths are in m, temperatures in °C; every place, velocity and acceleration has three numbers.
 
+mod check;
 mod faces;
 mod fan;
 mod scene;

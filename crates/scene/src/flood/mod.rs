@@ -2,6 +2,7 @@
 //! (for a geographic terrain: longitude and latitude in degrees wherever a place is named).
 
 mod adaptive;
+mod check;
 mod finer;
 mod friction;
 mod obstacle;

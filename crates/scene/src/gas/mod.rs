@@ -4,6 +4,7 @@
 //! many. Quantities are in reduced units, with Boltzmann's constant 1 and no names of units, or in SI units: m, s, kg,
 //! K, and pressure in Pa (in two dimensions N/m).
 
+mod check;
 mod scene;
 mod walls;
 

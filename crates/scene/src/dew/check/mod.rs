@@ -3,8 +3,8 @@
 mod heat;
 mod solids;
 
-use super::{Check, Checked, SIDES};
 use crate::Axis;
+use crate::check::{Check, Checked, SIDES};
 use crate::dew::{Air, AirInflow, Dew, Drops, Face, Fan, LowUtility, Transport, ZERO_CELSIUS};
 
 /// 0 K in °C.

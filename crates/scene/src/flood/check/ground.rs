@@ -1,6 +1,6 @@
 //! Checks of rain, of the ground, and of what lets water out or leads it elsewhere.
 
-use super::super::{Check, Checked};
+use crate::check::{Check, Checked};
 use crate::{Culvert, Flood, Friction, Infiltration, Link, LinkLaw, Outflow, Rain, Series, Stage, Weir};
 
 impl Check {

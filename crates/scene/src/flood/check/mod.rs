@@ -2,7 +2,7 @@
 
 mod ground;
 
-use super::{Check, Checked};
+use crate::check::{Check, Checked};
 use crate::{
     Adaptive, Block, Edge, Field, Finer, Flood, Gauge, Inflow, LARGEST_MANNING, Manning, Obstacle, Problem, Scheme,
     Series, SphSwe, StartVelocity, Water,

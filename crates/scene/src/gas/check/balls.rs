@@ -1,7 +1,7 @@
 //! Checks of `[[gas.ball]]` and `[[gas.species]]`.
 
-use super::{CLOSE_PACKING, Check, Checked, MOST_BALLS};
-use crate::check::SIDES;
+use super::{CLOSE_PACKING, MOST_BALLS};
+use crate::check::{Check, Checked, SIDES};
 use crate::{Axis, Ball, Gas, Problem, Region, Species, Wall};
 use std::collections::HashMap;
 use std::f64::consts::PI;

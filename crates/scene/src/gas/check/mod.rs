@@ -3,7 +3,7 @@
 mod balls;
 mod walls;
 
-use super::{Check, Checked, SIDES};
+use crate::check::{Check, Checked, SIDES};
 use crate::{Axis, Gas, Measure, Method, Partition, Region, Shear, SquareWell};
 
 /// Close packing: the densest that there is, pi / sqrt(12) of a plane (Thue 1910) and pi / sqrt(18) of space (Hales 2005).
