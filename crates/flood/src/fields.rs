@@ -3,7 +3,7 @@
 use crate::error::setup;
 use crate::polygon::is_inside;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Field, Flood as Settings, StartVelocity, Water};
+use corpuscle_scene::{Field, Flood, StartVelocity, Water};
 use corpuscle_terrain::{RasterField, Terrain};
 use std::path::Path;
 
@@ -55,7 +55,7 @@ pub(crate) fn block_velocity<'a>(velocity: &StartVelocity, terrain: &'a Terrain)
 }
 
 /// Refuses expressions that are not a finite number somewhere: at the centres of the terrain's cells, or of some of them, inside the body's polygon.
-pub(crate) fn check(scene: &Settings, terrain: &Terrain) -> Result<(), ModelError> {
+pub(crate) fn check(scene: &Flood, terrain: &Terrain) -> Result<(), ModelError> {
     let bodies = scene.water.iter().enumerate();
     bodies.into_iter().try_for_each(|(number, water)| check_body(&format!("flood.water.{number}"), water, terrain))
 }

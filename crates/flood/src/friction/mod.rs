@@ -2,7 +2,7 @@
 
 use crate::error::setup;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Flood as Settings, Friction, LARGEST_MANNING, LandUse, Manning};
+use corpuscle_scene::{Flood, Friction, LARGEST_MANNING, LandUse, Manning};
 use corpuscle_terrain::{RasterField, Terrain};
 use std::path::Path;
 
@@ -71,7 +71,7 @@ pub(crate) enum Coefficient {
 }
 
 impl Roughness {
-    pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
+    pub fn open(scene: &Flood, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
         let even = |law, number| Ok(Self { law, number: Coefficient::Even(number) });
         match scene.friction {
             Some(Friction::Chezy(c)) => return even(Law::Chezy, c),

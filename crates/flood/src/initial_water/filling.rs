@@ -4,7 +4,7 @@ use crate::error::setup;
 use crate::fields::{self, OfPosition};
 use crate::polygon::is_inside;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Flood as Settings, Water};
+use corpuscle_scene::{Flood, Water};
 use corpuscle_terrain::{RasterField, Terrain};
 use std::path::Path;
 
@@ -28,7 +28,7 @@ pub struct StartWater<'a> {
 
 /// The bodies of water that a scene fills at the start (blocks in the air apart).
 pub(crate) fn of_scene<'a>(
-    scene: &Settings,
+    scene: &Flood,
     terrain: &'a Terrain,
     folder: &Path,
 ) -> Result<Vec<StartWater<'a>>, ModelError> {

@@ -3,7 +3,7 @@
 use super::clip::{side_within, surroundings};
 use super::open::check_overlap;
 use corpuscle_model::ModelError;
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
 
 /// Most parts of a side of a line.
@@ -23,7 +23,7 @@ pub(crate) struct Line {
 ///
 /// # Errors
 /// [`ModelError::Setup`] for one that lies outside the terrain.
-pub(crate) fn lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Result<Vec<Line>, ModelError> {
+pub(crate) fn lines(scene: &Flood, terrain: &Terrain, spacing: f64) -> Result<Vec<Line>, ModelError> {
     let mut lines = Vec::new();
     let far = surroundings(terrain, spacing);
     for (number, obstacle) in scene.obstacle.iter().enumerate() {

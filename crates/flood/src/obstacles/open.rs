@@ -4,7 +4,7 @@ use super::clip::{ring_within, surroundings};
 use super::{Outline, Outlines, shapefile};
 use crate::extent::{check_inside, is_beside};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Circle, Flood as Settings, Obstacle, read_bytes, read_text};
+use corpuscle_scene::{Circle, Flood, Obstacle, read_bytes, read_text};
 use corpuscle_terrain::{Bounds, Polygon, Terrain, polygons_of_geojson};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -16,7 +16,7 @@ const ROUND: usize = 360;
 ///
 /// # Errors
 /// [`ModelError::Setup`] for a file that holds no polygon, or one that lies outside the terrain or where its projection does not reach.
-pub(crate) fn open(flood: &Settings, terrain: &Terrain, folder: &Path, reach: f64) -> Result<Outlines, ModelError> {
+pub(crate) fn open(flood: &Flood, terrain: &Terrain, folder: &Path, reach: f64) -> Result<Outlines, ModelError> {
     let mut outlines = Vec::new();
     let far = surroundings(terrain, reach);
     for (number, obstacle) in flood.obstacle.iter().enumerate() {

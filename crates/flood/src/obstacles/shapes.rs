@@ -4,7 +4,7 @@ use super::Outline;
 use super::lines::lines;
 use super::open::polygons;
 use corpuscle_model::{ModelError, SolidShape};
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ const MOST_PARTS: f64 = 1e4;
 /// # Errors
 /// [`ModelError::Setup`] for a file that cannot be read or holds no polygon.
 pub fn obstacle_shapes(
-    flood: &Settings,
+    flood: &Flood,
     terrain: &Terrain,
     folder: &Path,
     high_enough: f64,
@@ -61,7 +61,7 @@ pub struct LineWall {
 ///
 /// # Errors
 /// [`ModelError::Setup`] for one that lies outside the terrain.
-pub fn line_walls(flood: &Settings, terrain: &Terrain, high_enough: f64) -> Result<Vec<LineWall>, ModelError> {
+pub fn line_walls(flood: &Flood, terrain: &Terrain, high_enough: f64) -> Result<Vec<LineWall>, ModelError> {
     let cell = terrain.map_grid().cell_size().into_iter().fold(f64::INFINITY, f64::min);
     let lines = lines(flood, terrain, cell)?;
     Ok(lines.into_iter().flat_map(|line| line_parts(line.ends, line.crest, terrain, cell, high_enough)).collect())

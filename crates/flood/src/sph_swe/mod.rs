@@ -55,11 +55,11 @@ use crate::sampling::Sample;
 use crate::zone::Source;
 use change::Overrides;
 use corpuscle_model::{Account, CompensatedSum};
-use corpuscle_scene::{Flood as Settings, Table};
+use corpuscle_scene::{Flood, Table};
 use falling::Falling;
 use sampling::Sampler;
 use serde::{Deserialize, Serialize};
-use solver::SphSwe;
+use solver::SphSweSolver;
 use step::BlockUpdate;
 use surroundings::Surroundings;
 
@@ -71,10 +71,10 @@ const SAMPLED: f64 = 0.5;
 
 /// Shallow water as particles of a fixed volume over terrain (scheme `sph-swe`).
 pub struct SphSweFlood {
-    settings: Settings,
+    settings: Flood,
     seed: u64,
     surroundings: Surroundings,
-    solver: SphSwe,
+    solver: SphSweSolver,
     roughness: Roughness,
     sources: Vec<Source>,
     points: Vec<PointGauge>,
@@ -201,7 +201,7 @@ impl SphSweFlood {
     }
 
     /// The `[flood]` of the scene with every default that depends on ground and water filled in.
-    pub fn settings(&self) -> &Settings {
+    pub fn settings(&self) -> &Flood {
         &self.settings
     }
 

@@ -8,14 +8,14 @@ use super::maps::Maps;
 use super::obstacles::Obstacles;
 use super::particle::Particle;
 use super::seeding::Body;
-use super::solver::SphSwe;
+use super::solver::SphSweSolver;
 use super::surroundings::Surroundings;
 use super::{SphSweFlood, State};
 use crate::friction::Roughness;
 use crate::initial_water::{self, InitialWater};
 use crate::{error, fields, limits, obstacles, setup, spacing};
 use corpuscle_model::{Account, CompensatedSum, ModelError};
-use corpuscle_scene::{Block, Edge, Flood as Settings, Scheme, SmoothingForm, SphSwe as Parameters};
+use corpuscle_scene::{Block, Edge, Flood, Scheme, SmoothingForm, SphSwe};
 use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 use corpuscle_terrain::Terrain;
 use rand::RngExt;
@@ -32,7 +32,7 @@ impl SphSweFlood {
     ///
     /// # Errors
     /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
-    pub fn new(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+    pub fn new(settings: &Flood, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         let ground = Arc::clone(&terrain);
         let bodies = initial_water::initial_water(settings, &ground, folder)?;
         Self::with_water(settings, seed, folder, terrain, &bodies)
@@ -42,12 +42,7 @@ impl SphSweFlood {
     ///
     /// # Errors
     /// As [`SphSweFlood::new`].
-    pub fn to_restore(
-        settings: &Settings,
-        seed: u64,
-        folder: &Path,
-        terrain: Arc<Terrain>,
-    ) -> Result<Self, ModelError> {
+    pub fn to_restore(settings: &Flood, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         let ground = Arc::clone(&terrain);
         let bodies = initial_water::initial_water(settings, &ground, folder)?;
         Self::empty(settings, seed, folder, terrain, &bodies)
@@ -58,7 +53,7 @@ impl SphSweFlood {
     /// # Errors
     /// As [`SphSweFlood::new`].
     pub fn with_water(
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -72,7 +67,7 @@ impl SphSweFlood {
 
     /// All but the particles.
     fn empty(
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -135,7 +130,7 @@ impl SphSweFlood {
             lines: setup::line_gauges(flood, &terrain, spacing)?,
             map_period,
             surroundings: Surroundings { terrain, edges, obstacles },
-            solver: SphSwe::new(settings.sph_swe.clone(), h, settings.gravity_m_per_s2),
+            solver: SphSweSolver::new(settings.sph_swe.clone(), h, settings.gravity_m_per_s2),
             settings,
             seed,
             sources,
@@ -246,7 +241,7 @@ impl SphSweFlood {
 }
 
 /// The rules of the sides.
-fn edge_rules(scene: &Settings, terrain: &Terrain) -> Result<EdgeRules, ModelError> {
+fn edge_rules(scene: &Flood, terrain: &Terrain) -> Result<EdgeRules, ModelError> {
     let rule = |edge: &Edge| match edge {
         Edge::Open => Ok(EdgeRule::Open),
         Edge::Wall => Ok(EdgeRule::Wall),
@@ -260,7 +255,7 @@ fn edge_rules(scene: &Settings, terrain: &Terrain) -> Result<EdgeRules, ModelErr
 
 /// Refuses an initial smoothing length, m, with which a particle's weight of itself, m W(0, h), is more than its density: with
 /// `smoothing = "density"` h would be shorter in the next step, that weight larger, and so on without end.
-fn check_smoothing(parameters: &Parameters, h: f64, volume: f64) -> Result<(), ModelError> {
+fn check_smoothing(parameters: &SphSwe, h: f64, volume: f64) -> Result<(), ModelError> {
     // The depth that a particle alone has where its smoothing length is h, which goes with a depth of 1 m.
     let own_depth = volume * Kernel::<2>::new(parameters.kernel, h).value(0.0);
     if own_depth < 1.0 || parameters.smoothing != SmoothingForm::Density {

@@ -10,7 +10,7 @@ use super::neighbours::Arrangement;
 use super::particle::Particle;
 use super::surroundings::Surroundings;
 use bytemuck::{Pod, Zeroable};
-use corpuscle_scene::{SmoothingForm, SphSwe as Parameters};
+use corpuscle_scene::{SmoothingForm, SphSwe};
 
 /// What the force pass reads of a particle or ghost particle: one cache line, a row of numbers to gather.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
@@ -28,8 +28,8 @@ pub(super) struct Column {
 }
 
 /// The scheme with its working memory.
-pub(crate) struct SphSwe {
-    pub(super) parameters: Parameters,
+pub(crate) struct SphSweSolver {
+    pub(super) parameters: SphSwe,
     /// Initial smoothing length, m.
     pub(super) h0: f64,
     pub(super) gravity: f64,
@@ -48,8 +48,8 @@ pub(crate) struct SphSwe {
     pub(super) on_obstacles: Vec<[f64; 2]>,
 }
 
-impl SphSwe {
-    pub fn new(parameters: Parameters, h0: f64, gravity: f64) -> Self {
+impl SphSweSolver {
+    pub fn new(parameters: SphSwe, h0: f64, gravity: f64) -> Self {
         Self {
             parameters,
             h0,

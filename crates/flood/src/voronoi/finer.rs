@@ -6,13 +6,13 @@ use crate::error::setup;
 use crate::extent::is_beside;
 use crate::obstacles::{Outline, polygons};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Flood as Settings, Obstacle};
+use corpuscle_scene::{Flood, Obstacle};
 use corpuscle_terrain::{Polygon, Terrain};
 use std::path::Path;
 
 /// The parts of a scene with finer cells than those `spacing` m wide. `outlines` are those of its obstacles, `lines` its walls of no thickness.
 pub(super) fn grading(
-    scene: &Settings,
+    scene: &Flood,
     terrain: &Terrain,
     folder: &Path,
     (spacing, outlines, lines): (f64, &[Outline], &[Wall]),

@@ -25,7 +25,7 @@ use crate::zone::Zone;
 use crate::{limits, obstacles, spacing};
 use corpuscle_model::{Account, ExactSum, ModelError};
 use corpuscle_processes::Processes;
-use corpuscle_scene::{Flood as Settings, TimeSteps};
+use corpuscle_scene::{Flood, TimeSteps};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 use std::path::Path;
@@ -49,7 +49,7 @@ impl VoronoiFlood {
     ///
     /// # Errors
     /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
-    pub fn new(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+    pub fn new(settings: &Flood, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         Self::new_on(&Processes::alone(), settings, seed, folder, terrain)
     }
 
@@ -60,7 +60,7 @@ impl VoronoiFlood {
     /// As [`VoronoiFlood::new`], of any process.
     pub fn new_on(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -75,12 +75,7 @@ impl VoronoiFlood {
     ///
     /// # Errors
     /// As [`VoronoiFlood::new`].
-    pub fn to_restore(
-        settings: &Settings,
-        seed: u64,
-        folder: &Path,
-        terrain: Arc<Terrain>,
-    ) -> Result<Self, ModelError> {
+    pub fn to_restore(settings: &Flood, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         Self::to_restore_on(&Processes::alone(), settings, seed, folder, terrain)
     }
 
@@ -90,7 +85,7 @@ impl VoronoiFlood {
     /// As [`VoronoiFlood::new_on`].
     pub fn to_restore_on(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -105,7 +100,7 @@ impl VoronoiFlood {
     /// # Errors
     /// As [`VoronoiFlood::new`].
     pub fn with_water(
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -120,7 +115,7 @@ impl VoronoiFlood {
     /// As [`VoronoiFlood::new_on`].
     pub fn with_water_on(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -165,7 +160,7 @@ impl VoronoiFlood {
     /// All but the water.
     fn empty(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -180,7 +175,7 @@ impl VoronoiFlood {
     /// All but cells and water.
     fn without_cells(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,

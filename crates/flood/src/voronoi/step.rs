@@ -8,7 +8,7 @@ use super::{DENSITY, State, VoronoiFlood, maps, walls};
 use crate::fields::block_velocity;
 use crate::setup::{lattice, random};
 use corpuscle_model::{ExactSum, ModelError};
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_terrain::{Bounds, Terrain};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ pub(super) struct Drop {
 pub(super) const FIRST_DROP: u64 = 1 << 48;
 
 /// The drops of the blocks of a scene: layers of a lattice, each shifted a little at random so that no two stand one above the other.
-pub(super) fn drops(scene: &Settings, spacing: f64, terrain: &Terrain, seed: u64) -> Vec<Drop> {
+pub(super) fn drops(scene: &Flood, spacing: f64, terrain: &Terrain, seed: u64) -> Vec<Drop> {
     let mut random = random(seed, u64::MAX);
     let volume = spacing * spacing * scene.spacing_depth_m.unwrap_or(1.0);
     let mut drops = Vec::new();

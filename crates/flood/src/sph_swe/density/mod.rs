@@ -7,9 +7,9 @@ use super::ground::GROUND_BLOCK;
 use super::neighbours::{Arrangement, GHOST};
 use super::obstacles::Obstacles;
 use super::particle::Particle;
-use super::solver::{Column, SphSwe};
+use super::solver::{Column, SphSweSolver};
 use super::surroundings::Surroundings;
-use corpuscle_scene::{KernelName, SmoothingForm, SphSwe as Parameters};
+use corpuscle_scene::{KernelName, SmoothingForm, SphSwe};
 use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 use corpuscle_sph::{EachReach, Lanes, LanesExt, Near, Neighbours, PairSum, Simd, SimdBase};
 use rayon::prelude::*;
@@ -62,7 +62,7 @@ fn at_centre(kernel: &Kernel<2>) -> f64 {
     kernel.value(0.0) / kernel.value_factor()
 }
 
-impl SphSwe {
+impl SphSweSolver {
     /// Gives every place the volume of its particle, where they are not all the same.
     fn fill_volumes(&mut self, particles: &[Particle]) {
         self.volumes.clear();
@@ -114,7 +114,7 @@ impl SphSwe {
 
     /// Fills the columns of particles and ghost particles from the densities.
     pub(super) fn fill_columns(&mut self, particles: &[Particle], surroundings: &Surroundings) {
-        let Parameters { density_kg_per_m3: rho0, gas_constant, clip_negative_pressure, .. } = self.parameters;
+        let SphSwe { density_kg_per_m3: rho0, gas_constant, clip_negative_pressure, .. } = self.parameters;
         self.columns.resize(self.arrangement.len(), Column::default());
         self.columns.par_iter_mut().zip(&self.arrangement.particle).for_each(|(column, &particle)| {
             if particle == GHOST {
@@ -151,12 +151,12 @@ impl SphSwe {
 }
 
 /// h = h0 (rho0 / rho)^(1/2), at most `largest_smoothing` times h0, m.
-pub(in crate::sph_swe) fn h_of_density(parameters: &Parameters, h0: f64, density: f64) -> f64 {
+pub(in crate::sph_swe) fn h_of_density(parameters: &SphSwe, h0: f64, density: f64) -> f64 {
     (h0 * (parameters.density_kg_per_m3 / density).sqrt()).min(parameters.largest_smoothing * h0)
 }
 
 /// What boundary particles add to the density of a particle, over rho0: sum_k V_k W_ik (Akinci et al. 2012, equation 6).
-fn covered(parameters: &Parameters, obstacles: &Obstacles, particle: &Particle) -> f64 {
+fn covered(parameters: &SphSwe, obstacles: &Obstacles, particle: &Particle) -> f64 {
     let kernel = Kernel::<2>::new(parameters.kernel, particle.h);
     let mut sum = 0.0;
     obstacles.each([particle.x, particle.y], particle.h, |site, r, _| sum += site.volume * kernel.value(r * r));

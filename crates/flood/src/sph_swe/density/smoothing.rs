@@ -3,7 +3,7 @@
 use super::h_of_density;
 use crate::sph_swe::obstacles::Obstacles;
 use crate::sph_swe::particle::Particle;
-use crate::sph_swe::solver::{Column, SphSwe};
+use crate::sph_swe::solver::{Column, SphSweSolver};
 use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_SQRT_PI;
@@ -22,7 +22,7 @@ const H_IN_SPACINGS: f64 = 1.2;
 /// neighbours it leaves them there. The density of a particle alone, 4 m / (pi h^2), makes the bound larger than its h, until it finds some.
 const MIN_H_FACTOR: f64 = 0.5;
 
-impl SphSwe {
+impl SphSweSolver {
     /// Smoothing lengths for the next step by forms (8) and (9): the first for particles that have none yet (`next_h` is 0), the
     /// second for those that have moved for `step` s.
     pub(in crate::sph_swe) fn find_smoothing(&self, particles: &mut [Particle], obstacles: &Obstacles, step: f64) {

@@ -3,7 +3,7 @@
 use crate::sph_swe::density::h_of_density;
 use crate::sph_swe::ground::GROUND_BLOCK;
 use crate::sph_swe::particle::Particle;
-use corpuscle_scene::{SmoothingForm, SphSwe as Parameters};
+use corpuscle_scene::{SmoothingForm, SphSwe};
 use corpuscle_sph::{LANES, Lanes, Level, Simd, SimdBase, SimdFloat, dispatch};
 use corpuscle_terrain::Terrain;
 
@@ -19,7 +19,7 @@ const CORNERS: [[f64; 2]; 4] = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.
 /// Our reading, for the paper's units do not close: the size of NP is |NP| in three dimensions, it acts against the horizontal
 /// motion, and it is an acceleration times `control_strength`. It stops the motion at most.
 pub(super) fn control(
-    parameters: &Parameters,
+    parameters: &SphSwe,
     h0: f64,
     particles: &[Particle],
     terrain: &Terrain,

@@ -4,15 +4,15 @@ mod control;
 
 use super::neighbours::Arrangement;
 use super::particle::Particle;
-use super::solver::{Column, SphSwe};
+use super::solver::{Column, SphSweSolver};
 use super::surroundings::Surroundings;
 use control::{CONTROLLED, control};
-use corpuscle_scene::SphSwe as Parameters;
+use corpuscle_scene::SphSwe;
 use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Simd, SimdBase, dispatch, gather};
 use rayon::prelude::*;
 
-impl SphSwe {
+impl SphSweSolver {
     /// Finds the accelerations by pressure and viscosity.
     pub(super) fn add_pair_forces(&mut self) {
         self.accelerations.resize(self.arrangement.len(), [0.0; 2]);
@@ -60,7 +60,7 @@ impl SphSwe {
 #[inline(always)]
 fn pair_forces<S: Simd>(
     simd: S,
-    parameters: &Parameters,
+    parameters: &SphSwe,
     arrangement: &Arrangement,
     columns: &[Column],
     first: usize,

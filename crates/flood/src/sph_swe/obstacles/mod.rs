@@ -16,7 +16,7 @@ use crate::obstacles::Outline;
 #[cfg(feature = "gpu")]
 use crate::obstacles::OutlineCells;
 use crate::obstacles::Outlines;
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_sph::kernel::{CubicSpline, Kernel, SmoothingKernel};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
@@ -52,7 +52,7 @@ impl Obstacles {
     /// The obstacles of a scene with these outlines for particles `spacing` m apart where they are closest whose `kernel` has the support of the
     /// start; they reach at most `reach` m.
     pub fn new(
-        flood: &Settings,
+        flood: &Flood,
         terrain: &Terrain,
         outlines: Outlines,
         spacing: f64,

@@ -2,12 +2,12 @@
 
 use super::Obstacles;
 use crate::sph_swe::particle::Particle;
-use crate::sph_swe::solver::SphSwe;
-use corpuscle_scene::SphSwe as Parameters;
+use crate::sph_swe::solver::SphSweSolver;
+use corpuscle_scene::SphSwe;
 use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 use rayon::prelude::*;
 
-impl SphSwe {
+impl SphSweSolver {
     /// Adds the push of obstacles to that of the water.
     pub(in crate::sph_swe) fn add_walls(&mut self, particles: &[Particle], obstacles: &Obstacles) {
         self.on_obstacles.clear();
@@ -40,8 +40,8 @@ impl SphSwe {
 
 /// The push of boundary particles, m/s2, and the number of the nearest one's obstacle:
 /// a = -sum_k rho0 V_k (p_i / rho_i^2) grad W_ik (Akinci et al. 2012, equation 9).
-fn push_of_walls(parameters: &Parameters, obstacles: &Obstacles, particle: &Particle) -> ([f64; 2], Option<usize>) {
-    let Parameters { density_kg_per_m3: rho0, gas_constant, clip_negative_pressure, .. } = *parameters;
+fn push_of_walls(parameters: &SphSwe, obstacles: &Obstacles, particle: &Particle) -> ([f64; 2], Option<usize>) {
+    let SphSwe { density_kg_per_m3: rho0, gas_constant, clip_negative_pressure, .. } = *parameters;
     let density = rho0 * particle.depth;
     let pressure = gas_constant * (density - rho0);
     let pressure = if clip_negative_pressure { pressure.max(0.0) } else { pressure };

@@ -4,7 +4,7 @@ use super::super::VoronoiFlood;
 use super::super::domain::{any, total};
 use super::super::mesh::{Blocks, Layout};
 use super::super::solver::Solver;
-use corpuscle_scene::Adaptive as Settings;
+use corpuscle_scene::Adaptive;
 use rayon::prelude::*;
 
 /// Part of `rise_over_depth` below which cells become coarser (hysteresis).
@@ -73,7 +73,7 @@ fn points(blocks: &Blocks) -> f64 {
 /// The criteria of refinement.
 struct Criteria<'a> {
     solver: &'a Solver,
-    settings: &'a Settings,
+    settings: &'a Adaptive,
     finest: u8,
     wet_depth: f64,
 }

@@ -8,7 +8,7 @@ use super::{Boundary, Now, state};
 use crate::error::setup;
 use crate::series::load;
 use corpuscle_model::{ExactSum, ModelError};
-use corpuscle_scene::{Edge, Flood as Settings, Side};
+use corpuscle_scene::{Edge, Flood, Side};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 
@@ -65,7 +65,7 @@ fn check_overlaps(parts: &[Part]) -> Result<(), ModelError> {
 }
 
 impl Boundaries {
-    pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
+    pub fn open(scene: &Flood, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
         let edges = &scene.edges;
         let sides = [&edges.west, &edges.east, &edges.south, &edges.north];
         let of_parts = scene.edge_part.iter().map(|part| &part.edge);

@@ -11,7 +11,7 @@ use super::water::Column;
 use crate::error::setup;
 use crate::series::load;
 use corpuscle_model::{ExactSum, Map, ModelError};
-use corpuscle_scene::{Flood as Settings, Table};
+use corpuscle_scene::{Flood, Table};
 use corpuscle_terrain::{RasterField, Terrain};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -71,7 +71,7 @@ pub(crate) struct Soaked {
 
 impl Weather {
     /// Rain and soils of a scene; none where it neither rains nor soaks in.
-    pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path) -> Result<Option<Self>, ModelError> {
+    pub fn open(scene: &Flood, terrain: &Terrain, folder: &Path) -> Result<Option<Self>, ModelError> {
         let by_class = scene.land_use.iter().flat_map(|land_use| &land_use.class);
         let soaks = scene.infiltration.is_some() || by_class.clone().any(|class| class.infiltration.is_some());
         if scene.rain.is_none() && !soaks {

@@ -6,7 +6,7 @@ use crate::error::setup;
 use crate::extent::{is_beside, span};
 use crate::initial_water::{Filling, StartWater};
 use corpuscle_model::ModelError;
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 
@@ -125,7 +125,7 @@ impl Clip {
 }
 
 /// Refuses a polygon that lies wholly outside the terrain.
-pub(crate) fn check_polygons(scene: &Settings, terrain: &Terrain) -> Result<(), ModelError> {
+pub(crate) fn check_polygons(scene: &Flood, terrain: &Terrain) -> Result<(), ModelError> {
     for (number, water) in scene.water.iter().enumerate() {
         let Some(polygon) = &water.polygon else { continue };
         let corners: Vec<[f64; 2]> = polygon.iter().map(|&corner| terrain.to_model(corner)).collect();

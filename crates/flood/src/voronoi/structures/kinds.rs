@@ -6,7 +6,7 @@ use crate::extent::check_inside;
 use crate::series::load;
 use crate::zone::Zone;
 use corpuscle_model::{GaugeColumn, ModelError};
-use corpuscle_scene::{Flood as Settings, Link as LinkScene, LinkLaw, Series, Table};
+use corpuscle_scene::{Flood, LinkLaw, Series, Table};
 use corpuscle_terrain::Terrain;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -50,7 +50,7 @@ pub(crate) struct Flows {
 }
 
 impl Structures {
-    pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path, spacing: f64) -> Result<Self, ModelError> {
+    pub fn open(scene: &Flood, terrain: &Terrain, folder: &Path, spacing: f64) -> Result<Self, ModelError> {
         let zone = |what: &str, line: &Option<Vec<[f64; 2]>>, polygon: &Option<Vec<[f64; 2]>>, at: Option<[f64; 2]>| {
             let places = line.iter().chain(polygon).flatten().copied().chain(at).collect::<Vec<_>>();
             check_inside(what, &places, terrain)?;
@@ -71,7 +71,7 @@ impl Structures {
             let zone = zone(&format!("the stage '{}'", stage.name), &stage.line, &stage.polygon, None)?;
             Ok(Held { zone, level: load(&stage.level_m, folder)? })
         };
-        let link = |link: &LinkScene| {
+        let link = |link: &corpuscle_scene::Link| {
             check_inside(&format!("the link '{}'", link.name), &[link.from, link.to], terrain)?;
             let places = [link.from, link.to].map(|place| terrain.to_model(place));
             let [from, to] = places;

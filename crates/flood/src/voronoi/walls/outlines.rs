@@ -3,7 +3,7 @@
 use super::{Wall, WallKind};
 use crate::obstacles::{Line, Outline, check_overlap, lines, side_within, surroundings};
 use corpuscle_model::ModelError;
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
 
 /// The sides of outlines; no water flows over them.
@@ -19,7 +19,7 @@ pub(crate) fn of_outlines(outlines: &[Outline]) -> impl Iterator<Item = Wall> {
 ///
 /// # Errors
 /// [`ModelError::Setup`] for one that lies outside the terrain.
-pub(crate) fn of_lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Result<Vec<Wall>, ModelError> {
+pub(crate) fn of_lines(scene: &Flood, terrain: &Terrain, spacing: f64) -> Result<Vec<Wall>, ModelError> {
     let wall = |line: Line| Wall { ends: line.ends, kind: WallKind::Obstacle(line.obstacle as u32), crest: line.crest };
     Ok(lines(scene, terrain, spacing)?.into_iter().map(wall).collect())
 }
@@ -28,7 +28,7 @@ pub(crate) fn of_lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Res
 ///
 /// # Errors
 /// [`ModelError::Setup`] for one that lies outside the terrain.
-pub(crate) fn of_sides(scene: &Settings, terrain: &Terrain) -> Result<Vec<Wall>, ModelError> {
+pub(crate) fn of_sides(scene: &Flood, terrain: &Terrain) -> Result<Vec<Wall>, ModelError> {
     let mut walls = Vec::new();
     let far = surroundings(terrain, 0.0);
     for (number, side) in scene.edge_line.iter().enumerate() {
