@@ -18,7 +18,7 @@ pub(super) struct Overrides {
     discharges: Vec<(usize, Vec<[f64; 2]>)>,
     manning: Option<f64>,
     control: Option<bool>,
-    /// Gauges that were placed: names, and places in model coordinates.
+    /// Gauges that were placed: names, and positions in model coordinates.
     pub gauges: Vec<(String, [f64; 2])>,
 }
 

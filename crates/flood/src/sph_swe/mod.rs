@@ -205,7 +205,7 @@ impl SphSweFlood {
         &self.settings
     }
 
-    /// The water at a place in model coordinates, at the time shown.
+    /// The water at a position in model coordinates, at the time shown.
     pub fn sample(&self, x: f64, y: f64) -> Sample {
         self.sampler(self.since()).at(x, y)
     }

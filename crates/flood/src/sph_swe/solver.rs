@@ -35,14 +35,14 @@ pub(crate) struct SphSweSolver {
     pub(super) gravity: f64,
     pub(super) arrangement: Arrangement,
     pub(super) columns: Vec<Column>,
-    /// Volumes at the places of the arrangement, m3; none where all particles have the same.
+    /// Volumes at the indices of the arrangement, m3; none where all particles have the same.
     pub(super) volumes: Vec<f64>,
-    /// Depths at the places of the arrangement, m; 1/m2, still to be taken times the volume, where all particles have the same.
+    /// Depths at the indices of the arrangement, m; 1/m2, still to be taken times the volume, where all particles have the same.
     pub(super) densities: Vec<f64>,
     pub(super) accelerations: Vec<[f64; 2]>,
     pub(super) of_groups: Vec<[f64; 2]>,
     spare: Vec<Particle>,
-    /// Places of the particles near obstacles.
+    /// Indices of the particles near obstacles in the arrangement.
     pub(super) near_walls: Vec<u32>,
     pub(super) of_walls: Vec<([f64; 2], Option<usize>)>,
     pub(super) on_obstacles: Vec<[f64; 2]>,

@@ -53,40 +53,40 @@ impl EdgeRules {
     pub fn ghosts(&self, x: f64, y: f64, margin: f64, mut put: impl FnMut(GhostSide, f64, f64)) {
         let along_x = beyond(x, self.bounds.x_min, self.bounds.x_max, margin, &self.rules[..2]);
         let along_y = beyond(y, self.bounds.y_min, self.bounds.y_max, margin, &self.rules[2..]);
-        for (side, place) in along_x.iter().flatten() {
-            put(GhostSide { x: *side, y: 0 }, *place, y);
+        for (side, position) in along_x.iter().flatten() {
+            put(GhostSide { x: *side, y: 0 }, *position, y);
         }
-        for (side, place) in along_y.iter().flatten() {
-            put(GhostSide { x: 0, y: *side }, x, *place);
-            for (side_x, place_x) in along_x.iter().flatten() {
-                put(GhostSide { x: *side_x, y: *side }, *place_x, *place);
+        for (side, position) in along_y.iter().flatten() {
+            put(GhostSide { x: 0, y: *side }, x, *position);
+            for (side_x, position_x) in along_x.iter().flatten() {
+                put(GhostSide { x: *side_x, y: *side }, *position_x, *position);
             }
         }
     }
 
-    /// Whether a place is inside.
+    /// Whether a position is inside.
     pub fn hold(&self, [x, y]: [f64; 2]) -> bool {
         self.bounds.contains(x, y)
     }
 
-    /// Puts a place that has left through a periodic side back in, and one beyond a wall back before it; names the side over which it has left otherwise.
-    pub fn keep(&self, place: &mut [f64; 2], velocity: &mut [f64; 2]) -> Option<u8> {
+    /// Puts a position that has left through a periodic side back in, and one beyond a wall back before it; names the side over which it has left otherwise.
+    pub fn keep(&self, position: &mut [f64; 2], velocity: &mut [f64; 2]) -> Option<u8> {
         let mut left = None;
         let bounds = [(self.bounds.x_min, self.bounds.x_max), (self.bounds.y_min, self.bounds.y_max)];
         for axis in 0..2 {
             let (low, high) = bounds[axis];
-            let side = if place[axis] < low {
+            let side = if position[axis] < low {
                 0
-            } else if place[axis] >= high {
+            } else if position[axis] >= high {
                 1
             } else {
                 continue;
             };
             match self.rules[2 * axis + side] {
-                EdgeRule::Periodic => place[axis] = low + (place[axis] - low).rem_euclid(high - low),
+                EdgeRule::Periodic => position[axis] = low + (position[axis] - low).rem_euclid(high - low),
                 EdgeRule::Wall => {
                     let edge = [low, high][side];
-                    place[axis] = (2.0 * edge - place[axis]).clamp(low, high);
+                    position[axis] = (2.0 * edge - position[axis]).clamp(low, high);
                     velocity[axis] = -velocity[axis];
                 }
                 EdgeRule::Open => left = Some((2 * axis + side) as u8),
@@ -95,7 +95,7 @@ impl EdgeRules {
         left
     }
 
-    /// How far beyond a side a place is, m; negative inside.
+    /// How far beyond a side a position is, m; negative inside.
     pub fn beyond(&self, side: u8, x: f64, y: f64) -> f64 {
         let bounds = &self.bounds;
         match side {
@@ -112,10 +112,10 @@ pub(crate) const OUTWARD: [[f64; 2]; 4] = [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0],
 
 /// Ghost particles beyond the low and the high side along one axis; none beyond sides over which water leaves: there it goes on
 /// by itself.
-fn beyond(place: f64, low: f64, high: f64, margin: f64, rules: &[EdgeRule]) -> [Option<(i8, f64)>; 2] {
+fn beyond(position: f64, low: f64, high: f64, margin: f64, rules: &[EdgeRule]) -> [Option<(i8, f64)>; 2] {
     let periodic = rules[0] == EdgeRule::Periodic;
-    let below = if periodic { place - (high - low) } else { 2.0 * low - place };
-    let above = if periodic { place + (high - low) } else { 2.0 * high - place };
+    let below = if periodic { position - (high - low) } else { 2.0 * low - position };
+    let above = if periodic { position + (high - low) } else { 2.0 * high - position };
     let ghosts = |rule: &EdgeRule| matches!(rule, EdgeRule::Periodic | EdgeRule::Wall);
     let low_ghost = ghosts(&rules[0]) && below > low - margin && below <= low;
     let high_ghost = ghosts(&rules[1]) && above < high + margin && above >= high;
@@ -152,10 +152,10 @@ mod tests {
     #[test]
     fn what_leaves_comes_back_or_is_gone() {
         let velocity = [3.0, 1.0];
-        let keep = |rule, place: [f64; 2]| {
-            let (mut place, mut velocity) = (place, velocity);
-            let kept = rules(rule).keep(&mut place, &mut velocity);
-            (kept, place, velocity)
+        let keep = |rule, position: [f64; 2]| {
+            let (mut position, mut velocity) = (position, velocity);
+            let kept = rules(rule).keep(&mut position, &mut velocity);
+            (kept, position, velocity)
         };
         assert_eq!(keep(EdgeRule::Wall, [10.5, 1.0]), (None, [9.5, 1.0], [-3.0, 1.0]));
         assert_eq!(keep(EdgeRule::Wall, [0.1, 1.0]), (None, [0.1, 1.0], velocity));

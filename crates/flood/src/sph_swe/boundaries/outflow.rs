@@ -18,10 +18,10 @@ impl SphSweFlood {
         let State { particles, water, momentum, .. } = &mut self.state;
         particles.retain_mut(|particle| {
             let before = [particle.u, particle.v];
-            let mut place = [particle.x, particle.y];
+            let mut position = [particle.x, particle.y];
             let mut velocity = before;
-            let side = edges.keep(&mut place, &mut velocity);
-            [particle.x, particle.y] = place;
+            let side = edges.keep(&mut position, &mut velocity);
+            [particle.x, particle.y] = position;
             [particle.u, particle.v] = velocity;
             let carried = |velocity: [f64; 2]| DENSITY * particle.volume * (velocity[0] + velocity[1]);
             match (particle.outside, side) {

@@ -25,10 +25,10 @@ fn keep(value: f32, low: f32, high: f32, low_rule: u32, high_rule: u32) -> vec3f
 fn put_back(particle: ptr<function, Particle>) -> vec3f {
     var booked = vec3f(0.0);
     let volume = (*particle).volume;
-    let place = (*particle).place;
+    let position = (*particle).position;
     let was_inside = (*particle).outside == 0u;
-    let x = keep(place.x, parameters.bounds.x, parameters.bounds.y, parameters.rules.x, parameters.rules.y);
-    let y = keep(place.y, parameters.bounds.z, parameters.bounds.w, parameters.rules.z, parameters.rules.w);
+    let x = keep(position.x, parameters.bounds.x, parameters.bounds.y, parameters.rules.x, parameters.rules.y);
+    let y = keep(position.y, parameters.bounds.z, parameters.bounds.w, parameters.rules.z, parameters.rules.w);
     var velocity = (*particle).velocity;
     let before = sum(velocity);
     velocity *= vec2f(x.y, y.y);
@@ -45,7 +45,7 @@ fn put_back(particle: ptr<function, Particle>) -> vec3f {
         booked.y = volume;
         booked.z = volume * sum(velocity);
     }
-    (*particle).place = vec2f(x.x, y.x);
+    (*particle).position = vec2f(x.x, y.x);
     (*particle).velocity = velocity;
     (*particle).outside = side;
     return booked;
@@ -54,21 +54,21 @@ fn put_back(particle: ptr<function, Particle>) -> vec3f {
 // Whether a particle is so far beyond an edge that it is removed. One whose position is not finite stays, so that it is found.
 fn is_gone(particle: Particle) -> bool {
     let bounds = parameters.bounds;
-    let place = particle.place;
-    let beyond = max(max(bounds.x - place.x, place.x - bounds.y), max(bounds.z - place.y, place.y - bounds.w));
-    return particle.outside > 0u && is_finite(place.x) && is_finite(place.y) && beyond >= BEYOND * particle.next_h;
+    let position = particle.position;
+    let beyond = max(max(bounds.x - position.x, position.x - bounds.y), max(bounds.z - position.y, position.y - bounds.w));
+    return particle.outside > 0u && is_finite(position.x) && is_finite(position.y) && beyond >= BEYOND * particle.next_h;
 }
 
 // A particle counts itself in its cell.
 fn count(i: u32, particle: Particle) {
     var cell = status.cells - 1u;
     if !is_gone(particle) {
-        let at = (particle.place - parameters.grid.corner) * parameters.grid.per_cell;
+        let at = (particle.position - parameters.grid.corner) * parameters.grid.per_cell;
         let column = min(u32(max(at.x, 0.0)), parameters.grid.columns - 1u);
         let row = min(u32(max(at.y, 0.0)), parameters.grid.rows - 1u);
         cell = row * parameters.grid.columns + column;
     }
-    places[i] = vec2u(cell, atomicAdd(&counts[cell], 1u));
+    slots[i] = vec2u(cell, atomicAdd(&counts[cell], 1u));
     keys[i] = particle.id;
 }
 

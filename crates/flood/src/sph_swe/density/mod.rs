@@ -63,7 +63,7 @@ fn at_centre(kernel: &Kernel<2>) -> f64 {
 }
 
 impl SphSweSolver {
-    /// Gives every place the volume of its particle, where they are not all the same.
+    /// Gives every entry of the arrangement the volume of its particle, where they are not all the same.
     fn fill_volumes(&mut self, particles: &[Particle]) {
         self.volumes.clear();
         let is_first = |particle: &Particle| particle.volume == particles[0].volume;
@@ -73,8 +73,8 @@ impl SphSweSolver {
         let Arrangement { particle, ghosts, .. } = &self.arrangement;
         let volume = |&k: &u32| if k == GHOST { 0.0 } else { particles[k as usize].volume };
         particle.par_iter().map(volume).collect_into_vec(&mut self.volumes);
-        for &(place, shown) in ghosts {
-            self.volumes[place as usize] = self.volumes[shown as usize];
+        for &(index, shown) in ghosts {
+            self.volumes[index as usize] = self.volumes[shown as usize];
         }
     }
 
@@ -86,18 +86,18 @@ impl SphSweSolver {
         self.densities.resize(x.len(), 0.0);
         // Kernels at h_i: what a particle does not reach itself adds nothing.
         let (kernel, out, volumes) = (self.parameters.kernel, &mut self.densities, &self.volumes);
-        let (places, reach): ([&[f64]; 2], _) = ([x, y], EachReach { squared: reach_squared, near: Near::Reached });
+        let (positions, reach): ([&[f64]; 2], _) = ([x, y], EachReach { squared: reach_squared, near: Near::Reached });
         if volumes.is_empty() {
-            lists.search(cells, places, &reach, out, &NumberDensities { kernel, reach_squared });
+            lists.search(cells, positions, &reach, out, &NumberDensities { kernel, reach_squared });
         } else {
-            lists.search(cells, places, &reach, out, &Depths { kernel, reach_squared, volumes });
+            lists.search(cells, positions, &reach, out, &Depths { kernel, reach_squared, volumes });
         }
         let (this, rho0) = (&*self, self.parameters.density_kg_per_m3);
         let groups = particles.par_chunks_mut(GROUND_BLOCK).zip(this.arrangement.real.par_chunks(GROUND_BLOCK));
-        groups.for_each(|(particles, places)| {
+        groups.for_each(|(particles, indices)| {
             surroundings.find_ground(particles);
-            for (particle, &place) in particles.iter_mut().zip(places) {
-                let sum = this.densities[place as usize];
+            for (particle, &index) in particles.iter_mut().zip(indices) {
+                let sum = this.densities[index as usize];
                 let water = if this.volumes.is_empty() { particle.volume * sum } else { sum };
                 // Whose density was never found has no smoothing length by forms (8) and (9) yet.
                 let is_new = step == 0.0 || particle.depth == 0.0;
@@ -134,18 +134,18 @@ impl SphSweSolver {
                 h: particle.h,
             };
         });
-        for &(place, source) in &self.arrangement.ghosts {
-            let place = place as usize;
+        for &(index, source) in &self.arrangement.ghosts {
+            let index = index as usize;
             let mut column = self.columns[source as usize];
-            (column.x, column.y) = (self.arrangement.x[place], self.arrangement.y[place]);
-            let ghost = self.arrangement.entries[place].ghost;
+            (column.x, column.y) = (self.arrangement.x[index], self.arrangement.y[index]);
+            let ghost = self.arrangement.entries[index].ghost;
             if surroundings.edges.along_x(ghost) == Some(&EdgeRule::Wall) {
                 column.u = -column.u;
             }
             if surroundings.edges.along_y(ghost) == Some(&EdgeRule::Wall) {
                 column.v = -column.v;
             }
-            self.columns[place] = column;
+            self.columns[index] = column;
         }
     }
 }

@@ -28,12 +28,12 @@ impl SphSweSolver {
     pub(in crate::sph_swe) fn find_smoothing(&self, particles: &mut [Particle], obstacles: &Obstacles, step: f64) {
         let Self { parameters, h0, .. } = self;
         let longest = parameters.largest_smoothing * h0;
-        particles.par_iter_mut().zip(&self.arrangement.real).for_each(|(particle, &place)| {
+        particles.par_iter_mut().zip(&self.arrangement.real).for_each(|(particle, &index)| {
             let h = if particle.next_h > 0.0 {
                 // With the rate of the step's end for all of it, h = h exp(rate step): never negative, whatever the step.
-                particle.h * (step * self.rate(particle, obstacles, place)).exp()
+                particle.h * (step * self.rate(particle, obstacles, index)).exp()
             } else {
-                self.first(particle, obstacles, place)
+                self.first(particle, obstacles, index)
             };
             let by_density = h_of_density(parameters, *h0, parameters.density_kg_per_m3 * particle.depth);
             particle.next_h = h.max(MIN_H_FACTOR * by_density).min(longest);
@@ -42,9 +42,9 @@ impl SphSweSolver {
 
     /// Form (8), h_i = c_2 (sum_j m_j / rho_i)^(1/2), as the support of a kernel, m; the particle is a neighbour of itself. Only those
     /// within its present smoothing length are counted.
-    fn first(&self, particle: &Particle, obstacles: &Obstacles, place: u32) -> f64 {
+    fn first(&self, particle: &Particle, obstacles: &Obstacles, index: u32) -> f64 {
         let reach = SUPPORT_OVER_H * H_IN_SPACINGS * particle.area().sqrt();
-        let near = self.arrangement.lists.of(place as usize);
+        let near = self.arrangement.lists.of(index as usize);
         let mut volume = particle.volume;
         for (&other, &r) in near.index.iter().zip(near.distance) {
             if r < reach.min(particle.h) {
@@ -58,9 +58,9 @@ impl SphSweSolver {
 
     /// Form (9) over h, (1/h_i) Dh_i/Dt = -1/(2 rho_i) sum_j m_j (v_i - v_j) . grad W(r_ij, h_i), 1/s: the kernel of the
     /// density, so that h follows how it changes. Boundary particles count as they do in the density.
-    fn rate(&self, particle: &Particle, obstacles: &Obstacles, place: u32) -> f64 {
-        let own = &self.columns[place as usize];
-        let near = self.arrangement.lists.of(place as usize);
+    fn rate(&self, particle: &Particle, obstacles: &Obstacles, index: u32) -> f64 {
+        let own = &self.columns[index as usize];
+        let near = self.arrangement.lists.of(index as usize);
         let kernel = Kernel::<2>::new(self.parameters.kernel, own.h);
         let mut sum = 0.0;
         for (&other, &r) in near.index.iter().zip(near.distance) {

@@ -6,15 +6,15 @@
 
 
 // sum_j V_j W(r_ij, h_i), the particle itself included, m.
-fn depth_of_water(i: u32, place: vec2f, h: f32) -> f32 {
+fn depth_of_water(i: u32, position: vec2f, h: f32) -> f32 {
     var sum = spots[i].z * value_shape(0.0);
-    let mirrors = mirrors_round(place);
+    let mirrors = mirrors_round(position);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k);
-        if !sees(mirror, place, h) {
+        if !sees(mirror, position, h) {
             continue;
         }
-        let truth = behind(mirror, place);
+        let truth = behind(mirror, position);
         let cells = cells_round(parameters.grid, truth, h);
         for (var row = cells.y; row <= cells.w; row++) {
             let across = columns_round(parameters.grid, truth, h, row);
@@ -23,7 +23,7 @@ fn depth_of_water(i: u32, place: vec2f, h: f32) -> f32 {
             for (var j = start[line + across.x]; j < end; j++) {
                 let site = spots[j];
                 let there = ghost_of(mirror, site.xy);
-                let way = there - place;
+                let way = there - position;
                 if (j == i && k == 0u) || (k > 0u && !has_ghost(mirror, there, site.w)) {
                     continue;
                 }
@@ -35,16 +35,16 @@ fn depth_of_water(i: u32, place: vec2f, h: f32) -> f32 {
 }
 
 // What boundary particles add to the density, over that of the water at rest (Akinci et al. 2012, equation 6).
-fn covered(place: vec2f, h: f32) -> f32 {
-    if !is_near(parameters.walls, place, h) {
+fn covered(position: vec2f, h: f32) -> f32 {
+    if !is_near(parameters.walls, position, h) {
         return 0.0;
     }
     var sum = 0.0;
-    let cells = cells_round(parameters.walls, place, h);
+    let cells = cells_round(parameters.walls, position, h);
     for (var row = cells.y; row <= cells.w; row++) {
         let line = row * parameters.walls.columns;
         for (var k = site_start[line + cells.x]; k < site_start[line + cells.z + 1u]; k++) {
-            sum += sites[k].volume * kernel_value(distance(sites[k].place, place), h);
+            sum += sites[k].volume * kernel_value(distance(sites[k].position, position), h);
         }
     }
     return sum;
@@ -62,16 +62,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     var particle = unpacked(sorted[i]);
-    let relative = depth_of_water(i, particle.place, particle.h) + covered(particle.place, particle.h);
+    let relative = depth_of_water(i, particle.position, particle.h) + covered(particle.position, particle.h);
     particle.depth = relative;
     particle.next_h = min(parameters.first_h / sqrt(relative), parameters.widest_h);
-    particle.ground = ground_under(particle.place).x;
+    particle.ground = ground_under(particle.position).x;
     // From here on it holds what obstacles push.
     particle.acceleration = vec2f(0.0);
     sorted[i] = packed(particle);
     let density = parameters.rest_density * relative;
     columns[i] = Column(
-        particle.place,
+        particle.position,
         particle.velocity,
         particle.volume / relative,
         density,

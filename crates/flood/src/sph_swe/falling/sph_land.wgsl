@@ -2,8 +2,8 @@
 #import sph_water
 
 fn has_landed(drop: Drop) -> bool {
-    let ground = ground_at(drop.place).x;
-    return drop.z <= ground || drop.z <= ground + water_at(drop.place).x;
+    let ground = ground_at(drop.position).x;
+    return drop.z <= ground || drop.z <= ground + water_at(drop.position).x;
 }
 
 @compute @workgroup_size(GROUP)
@@ -14,7 +14,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var drop = drops[id.x];
     drop.z += status.step * (drop.w - 0.5 * parameters.gravity * status.step);
     drop.w -= parameters.gravity * status.step;
-    drop.place += status.step * drop.velocity;
+    drop.position += status.step * drop.velocity;
     drop.state = select(FALLS, LANDS, has_landed(drop));
     drops[id.x] = drop;
 }

@@ -6,7 +6,7 @@ var<workgroup> before: vec2u;
 
 fn particle_of(drop: Drop) -> Particle {
     var particle = Particle();
-    particle.place = drop.place;
+    particle.position = drop.position;
     particle.velocity = drop.velocity;
     particle.volume = drop.volume;
     particle.h = drop.h;

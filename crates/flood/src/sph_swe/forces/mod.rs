@@ -32,15 +32,15 @@ impl SphSweSolver {
         let controlled = self.parameters.control_force && step > 0.0;
         let Self { parameters, h0, gravity, accelerations, of_groups, .. } = self;
         let groups = particles.par_chunks_mut(CONTROLLED).zip(self.arrangement.real.par_chunks(CONTROLLED));
-        let of_group = |(particles, places): (&mut [Particle], &[u32])| {
+        let of_group = |(particles, indices): (&mut [Particle], &[u32])| {
             let controls = if controlled {
                 control(parameters, *h0, particles, &surroundings.terrain, step)
             } else {
                 [[0.0; 2]; CONTROLLED]
             };
             let mut sum = [0.0; 2];
-            for ((particle, &place), control) in particles.iter_mut().zip(places).zip(controls) {
-                let pairs = accelerations[place as usize];
+            for ((particle, &index), control) in particles.iter_mut().zip(indices).zip(controls) {
+                let pairs = accelerations[index as usize];
                 let slope = particle.ground_slope;
                 let acceleration = [0, 1].map(|k| match particle.outside {
                     None => pairs[k] - *gravity * slope[k] + control[k],

@@ -31,13 +31,13 @@ fn combine(a: Reduced, b: Reduced) -> Reduced {
 fn by_pairs(i: u32, own: Column) -> vec2f {
     let h = own.h;
     var force = vec2f(0.0);
-    let mirrors = mirrors_round(own.place);
+    let mirrors = mirrors_round(own.position);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k);
-        if !sees(mirror, own.place, h) {
+        if !sees(mirror, own.position, h) {
             continue;
         }
-        let truth = behind(mirror, own.place);
+        let truth = behind(mirror, own.position);
         let cells = cells_round(parameters.grid, truth, h);
         for (var row = cells.y; row <= cells.w; row++) {
             let across = columns_round(parameters.grid, truth, h, row);
@@ -45,8 +45,8 @@ fn by_pairs(i: u32, own: Column) -> vec2f {
             let end = start[line + across.y + 1u];
             for (var j = start[line + across.x]; j < end; j++) {
                 let near = columns[j];
-                let there = ghost_of(mirror, near.place);
-                let e = there - own.place;
+                let there = ghost_of(mirror, near.position);
+                let e = there - own.position;
                 let r = max(length(e), 2e-12 * h);
                 if r >= h || (j == i && k == 0u) || (k > 0u && !has_ghost(mirror, there, near.h)) {
                     continue;
@@ -71,7 +71,7 @@ fn control(particle: Particle) -> vec2f {
     var ways = 0.0;
     for (var corner = 0u; corner < 4u; corner++) {
         let across = array(vec2f(-0.5, -0.5), vec2f(0.5, -0.5), vec2f(0.5, 0.5), vec2f(-0.5, 0.5))[corner];
-        let slope = ground_at(particle.place + across * side - 0.5 * way).yz;
+        let slope = ground_at(particle.position + across * side - 0.5 * way).yz;
         ways += length(vec3f(way, dot(slope, way)));
     }
     let force = parameters.control_strength * 0.25 * side * side * particle.depth * ways;
@@ -80,7 +80,7 @@ fn control(particle: Particle) -> vec2f {
 
 // The next smoothing length of a particle; infinite where a value of it is not finite, which ends the run: beyond an edge no force would show it.
 fn sound_h(particle: Particle) -> f32 {
-    let is_placed = is_finite(particle.place.x) && is_finite(particle.place.y);
+    let is_placed = is_finite(particle.position.x) && is_finite(particle.position.y);
     let is_moved = is_finite(particle.velocity.x) && is_finite(particle.velocity.y);
     let is_sound = is_placed && is_moved && is_finite(particle.volume) && is_finite(particle.depth);
     return select(bitcast<f32>(0x7f800000u ^ parameters.zero), particle.next_h, is_sound);
@@ -89,10 +89,10 @@ fn sound_h(particle: Particle) -> f32 {
 // Accelerates a particle; what it adds to the sums.
 fn pushed(i: u32) -> Sums {
     var particle = unpacked(sorted[i]);
-    let place = particle.place;
+    let position = particle.position;
     var acceleration = vec2f(0.0);
     if particle.outside == 0u {
-        let slope = ground_under(place).yz;
+        let slope = ground_under(position).yz;
         acceleration = by_pairs(i, columns[i]) + particle.acceleration - parameters.gravity * slope + control(particle);
     }
     particle.acceleration = acceleration;
@@ -100,12 +100,12 @@ fn pushed(i: u32) -> Sums {
     var booked = 0.0;
     particle.velocity = velocity;
     if particle.outside == 0u {
-        let factor = slowed(roughness_at(place), velocity, particle.depth, status.step);
+        let factor = slowed(roughness_at(position), velocity, particle.depth, status.step);
         particle.velocity = factor * velocity;
         booked = particle.volume * (velocity.x + velocity.y) * (factor - 1.0);
     }
     particles[i] = packed(particle);
-    return Sums(booked, sound_h(particle), particle.volume * acceleration, place, place);
+    return Sums(booked, sound_h(particle), particle.volume * acceleration, position, position);
 }
 
 @compute @workgroup_size(GROUP)

@@ -2,12 +2,12 @@
 #import declared
 #import friction_rate
 
-// The coefficient of the law at a place, over gravity.
-fn roughness_at(place: vec2f) -> f32 {
+// The coefficient of the law at a position, over gravity.
+fn roughness_at(position: vec2f) -> f32 {
     if parameters.rough_cells.x == 0u {
         return parameters.roughness;
     }
-    let at = max((place - parameters.rough_corner) * parameters.rough_per_metre, vec2f(0.0));
+    let at = max((position - parameters.rough_corner) * parameters.rough_per_metre, vec2f(0.0));
     let cell = min(vec2u(at), parameters.rough_cells - 1u);
     return rough[cell.y * parameters.rough_cells.x + cell.x];
 }

@@ -46,9 +46,9 @@ impl SphSweFlood {
     }
 
     /// The positions of the gauges: points, those along lines, and points that were placed live.
-    pub(super) fn gauge_places(&self) -> Vec<[f64; 2]> {
+    pub(super) fn gauge_positions(&self) -> Vec<[f64; 2]> {
         let points = self.points.iter().map(|point| point.at);
-        let along_lines = self.lines.iter().flat_map(LineGauge::places);
+        let along_lines = self.lines.iter().flat_map(LineGauge::positions);
         points.chain(along_lines).chain(self.placed().map(|point| point.at)).collect()
     }
 
@@ -56,7 +56,7 @@ impl SphSweFlood {
     pub(super) fn reading(&self) -> Reading {
         let water = self.sampler(self.since());
         Reading {
-            samples: self.gauge_places().iter().map(|[x, y]| water.at(*x, *y)).collect(),
+            samples: self.gauge_positions().iter().map(|[x, y]| water.at(*x, *y)).collect(),
             on_obstacles: self.state.on_obstacles.clone(),
             impulses: self.state.impulses.clone(),
             stored: self.stored(),
@@ -76,7 +76,7 @@ impl SphSweFlood {
             .zip(next(self.points.len()))
             .flat_map(|(point, water)| point.row(terrain, *water))
             .collect();
-        row.extend(self.lines.iter().map(|line| line.discharge(next(line.places().count()))));
+        row.extend(self.lines.iter().map(|line| line.discharge(next(line.positions().count()))));
         let of_obstacles = reading.on_obstacles.iter().zip(&reading.impulses);
         row.extend(of_obstacles.flat_map(|(force, sum)| [*force, *sum]).flatten().map(|push| DENSITY * push));
         row.extend([reading.stored, reading.inflow, reading.outflow]);

@@ -3,7 +3,7 @@
 use super::Reading;
 use crate::sampling::Sample;
 use crate::sph_swe::gpu::OnGpu;
-use crate::sph_swe::gpu::shared::{GAUGES, Memory, OF_OBSTACLE, OF_PLACE, PLACES, STORED, Status, TOTALS};
+use crate::sph_swe::gpu::shared::{GAUGES, Memory, OF_OBSTACLE, OF_POSITION, POSITIONS, STORED, Status, TOTALS};
 use crate::sph_swe::gpu::tasks::{Shader, Tasks, task};
 use corpuscle_gpu::{Gpu, GpuError, Pass, Task, from_pair, read_together, storage, to_pair, wgpu};
 
@@ -23,24 +23,24 @@ const SLOTS: [u32; 3] = [GAUGES, GAUGES + 1, GAUGES + 2];
 /// Number of positions and obstacles in each row.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
-    places: usize,
+    positions: usize,
     obstacles: usize,
 }
 
 impl Extent {
     /// Words before the first row.
     fn first(self) -> usize {
-        PLACES as usize + 2 * self.places
+        POSITIONS as usize + 2 * self.positions
     }
 
     /// Words before the positions of a row.
-    fn before_places(self) -> usize {
+    fn before_positions(self) -> usize {
         (TOTALS + OF_OBSTACLE * self.obstacles as u32) as usize
     }
 
     /// Words of a row.
     fn stride(self) -> usize {
-        self.before_places() + OF_PLACE as usize * self.places
+        self.before_positions() + OF_POSITION as usize * self.positions
     }
 }
 
@@ -48,7 +48,7 @@ impl Extent {
 #[derive(Debug)]
 pub(in crate::sph_swe) struct Gauges {
     /// The positions in model coordinates.
-    places: Vec<[f64; 2]>,
+    positions: Vec<[f64; 2]>,
     extent: Extent,
     tasks: [Task; 3],
 }
@@ -74,20 +74,20 @@ impl Tasks {
 
 impl OnGpu {
     /// Sets the positions of the gauges.
-    pub fn measure(&mut self, places: &[[f64; 2]]) -> Result<(), GpuError> {
-        if self.tasks.gauges.as_ref().is_some_and(|gauges| gauges.places == places) {
+    pub fn measure(&mut self, positions: &[[f64; 2]]) -> Result<(), GpuError> {
+        if self.tasks.gauges.as_ref().is_some_and(|gauges| gauges.positions == positions) {
             return Ok(());
         }
-        let extent = Extent { places: places.len(), obstacles: self.obstacles.count };
+        let extent = Extent { positions: positions.len(), obstacles: self.obstacles.count };
         let (first, stride) = (extent.first(), extent.stride());
         let rows = storage::<u32>(self.gpu(), "rows of gauges", first + MOST_ROWS * stride)?;
         let header = [first, stride, extent.obstacles].map(|number| number as u32);
-        let relative = places.iter().flat_map(|place| self.origin.relative(*place).map(f32::to_bits));
+        let relative = positions.iter().flat_map(|position| self.origin.relative(*position).map(f32::to_bits));
         let uploaded: Vec<u32> = header.into_iter().chain(relative).collect();
         self.gpu().queue.write_buffer(&rows, 0, bytemuck::cast_slice(&uploaded));
         self.tasks.memory.rows = rows;
         let tasks = SHADERS.map(|shader| task(self.gpu(), shader, &self.tasks.memory));
-        self.tasks.gauges = Some(Gauges { places: places.to_vec(), extent, tasks });
+        self.tasks.gauges = Some(Gauges { positions: positions.to_vec(), extent, tasks });
         Ok(())
     }
 
@@ -97,7 +97,7 @@ impl OnGpu {
         self.gpu().queue.write_buffer(&self.tasks.memory.due, 0, bytemuck::cast_slice(&due));
         self.status.rows_uploaded = due.len() as u32;
         (self.status.rows_taken, self.status.rows_due) = (0, 0);
-        self.status.gauge_places = self.tasks.gauges.as_ref().map_or(0, |gauges| gauges.places.len() as u32);
+        self.status.gauge_positions = self.tasks.gauges.as_ref().map_or(0, |gauges| gauges.positions.len() as u32);
     }
 
     /// The rows of gauges of a batch. Inflow and outflow count from the start of the batch.
@@ -117,7 +117,7 @@ impl OnGpu {
             let at = first(obstacle);
             [0, 1].map(|axis| self.impulse(obstacle, axis, pair(at + 2 + 2 * axis), row[at + 6 + axis] as i32))
         };
-        let samples = row[extent.before_places()..].chunks_exact(OF_PLACE as usize).map(|sample| {
+        let samples = row[extent.before_positions()..].chunks_exact(OF_POSITION as usize).map(|sample| {
             let [depth, east, north] = [0, 1, 2].map(|at| f64::from(f32::from_bits(sample[at])));
             Sample { depth, velocity: [east, north] }
         });

@@ -11,7 +11,7 @@ impl SphSweFlood {
     /// others.
     ///
     /// # Errors
-    /// [`ModelError::Setup`] where another gauge has the name, or the place lies outside the terrain.
+    /// [`ModelError::Setup`] where another gauge has the name, or the position lies outside the terrain.
     pub fn place_gauge(&mut self, name: &str, at: [f64; 2]) -> Result<(), ModelError> {
         let terrain = &self.surroundings.terrain;
         if !terrain.bounds().contains(at[0], at[1]) {

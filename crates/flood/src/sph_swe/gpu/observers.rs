@@ -89,17 +89,19 @@ impl SphSweFlood {
 
     /// Uploads the positions of the gauges.
     pub(super) fn measure_on_gpu(&mut self) -> Result<(), ModelError> {
-        let places = self.gauge_places();
-        self.on_gpu.as_mut().map_or(Ok(()), |on_gpu| on_gpu.measure(&places)).map_err(|error| failed(&error))
+        let positions = self.gauge_positions();
+        self.on_gpu.as_mut().map_or(Ok(()), |on_gpu| on_gpu.measure(&positions)).map_err(|error| failed(&error))
     }
 
     /// The values of the columns from a reading of the GPU, after `done` since the host's state.
     pub(super) fn row_of_gpu(&self, read: &Reading, done: &BatchResult) -> Vec<f64> {
         let held = |[x, y]: [f64; 2]| self.surroundings.obstacles.hold([x, y]);
-        let samples = self.gauge_places().into_iter().zip(&read.samples);
+        let samples = self.gauge_positions().into_iter().zip(&read.samples);
         let water = &self.state.water;
         self.row(&Reading {
-            samples: samples.map(|(place, sample)| if held(place) { Sample::default() } else { *sample }).collect(),
+            samples: samples
+                .map(|(position, sample)| if held(position) { Sample::default() } else { *sample })
+                .collect(),
             inflow: water.inflow.value() + done.inflow + read.inflow,
             outflow: water.outflow.value() + done.outflow + read.outflow,
             ..read.clone()

@@ -3,16 +3,16 @@
 #import sph_ground
 #import sph_outlines
 
-// Whether a place is inside an obstacle.
-fn is_held(place: vec2f) -> bool {
-    let cell = outline_cell(place);
+// Whether a position is inside an obstacle.
+fn is_held(position: vec2f) -> bool {
+    let cell = outline_cell(position);
     if cell == NONE {
         return false;
     }
     for (var k = outlines[cell]; k < outlines[cell + 1u]; k += 3u) {
         var inside = false;
         for (var number = outlines[k + 1u]; number < outlines[k + 2u]; number++) {
-            inside = inside != crosses(place, side(number));
+            inside = inside != crosses(position, side(number));
         }
         if inside {
             return true;
@@ -27,9 +27,9 @@ fn on_ground(particle: Particle) -> DeviceParticle {
         return as_seen;
     }
     // What comes into an obstacle is put back before it is shown.
-    let moved = particle.place + shown.since * particle.velocity;
-    let place = select(moved, particle.place, is_held(moved));
-    as_seen.place = vec3f(place, ground_at(place).x + particle.depth);
+    let moved = particle.position + shown.since * particle.velocity;
+    let position = select(moved, particle.position, is_held(moved));
+    as_seen.place = vec3f(position, ground_at(position).x + particle.depth);
     as_seen.spacing = shown.spacing;
     as_seen.velocity = vec3f(particle.velocity, 0.0);
     as_seen.depth = particle.depth;
@@ -43,7 +43,7 @@ fn in_air(drop: Drop) -> DeviceParticle {
     if drop.state != FALLS {
         return as_seen;
     }
-    as_seen.place = vec3f(drop.place, drop.z);
+    as_seen.place = vec3f(drop.position, drop.z);
     as_seen.spacing = shown.drop_spacing;
     as_seen.velocity = vec3f(drop.velocity, drop.w);
     as_seen.volume = drop.volume;

@@ -56,7 +56,7 @@ impl OnGpu {
         self.upload_maps(water.maps);
         self.totals_before = ObstacleTotals { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
         let corners = |pick: fn(f32, f32) -> f32, none: f32| {
-            [0, 1].map(|axis| sent.iter().map(|particle| particle.place_and_velocity[axis]).fold(none, pick))
+            [0, 1].map(|axis| sent.iter().map(|particle| particle.position_and_velocity[axis]).fold(none, pick))
         };
         let sum_of_h: f64 = particles.iter().map(|particle| particle.next_h).sum();
         self.status = Status {

@@ -14,9 +14,9 @@ impl Surroundings {
     /// rises.
     pub fn find_ground(&self, particles: &mut [Particle]) {
         let last = particles.len() - 1;
-        let places: [_; GROUND_BLOCK] = std::array::from_fn(|k| &particles[k.min(last)]);
+        let padded: [_; GROUND_BLOCK] = std::array::from_fn(|k| &particles[k.min(last)]);
         let [heights, slopes_x, slopes_y] =
-            self.terrain.heights_and_slopes(&places.map(|particle| particle.x), &places.map(|particle| particle.y));
+            self.terrain.heights_and_slopes(&padded.map(|particle| particle.x), &padded.map(|particle| particle.y));
         let bounds = self.edges.bounds;
         for (k, particle) in particles.iter_mut().enumerate() {
             (particle.ground, particle.ground_slope) = (heights[k], [slopes_x[k], slopes_y[k]]);

@@ -18,10 +18,10 @@ fn between(weights: vec4f, west: vec4f, east: vec4f) -> vec2f {
     return weights.x * west.xy + weights.y * east.xy + weights.z * west.zw + weights.w * east.zw;
 }
 
-// Height and slope at a place; outside the bounds those of the nearest place inside.
-fn ground_at(place: vec2f) -> vec3f {
+// Height and slope at a position; outside the bounds those of the nearest position inside.
+fn ground_at(position: vec2f) -> vec3f {
     let most = vec2f(parameters.ground_patches);
-    let inside = clamp(place, parameters.bounds.xz, parameters.bounds.yw);
+    let inside = clamp(position, parameters.bounds.xz, parameters.bounds.yw);
     let at = clamp((inside - parameters.ground_corner) * parameters.ground_per_metre, vec2f(0.0), most);
     let patch_at = min(vec2u(at), parameters.ground_patches - 1u);
     let t = at - vec2f(patch_at);
@@ -44,9 +44,9 @@ fn ground_at(place: vec2f) -> vec3f {
 }
 
 // The same, but beyond an edge the ground goes on as it falls towards it, and never rises. Twin of `Surroundings::find_ground`.
-fn ground_under(place: vec2f) -> vec3f {
-    var ground = ground_at(place);
-    let beyond = place - clamp(place, parameters.bounds.xz, parameters.bounds.yw);
+fn ground_under(position: vec2f) -> vec3f {
+    var ground = ground_at(position);
+    let beyond = position - clamp(position, parameters.bounds.xz, parameters.bounds.yw);
     let fall = min(ground.yz * beyond, vec2f(0.0));
     ground.x += fall.x + fall.y;
     return ground;

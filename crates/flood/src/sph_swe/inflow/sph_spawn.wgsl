@@ -75,7 +75,7 @@ fn in_band(a: vec2f, b: vec2f, part: f32, beside: f32) -> vec2f {
 }
 
 // The `number`th random position in a zone for a stream.
-fn any_place(zone: u32, stream: vec2u, number: u32) -> vec2f {
+fn any_position(zone: u32, stream: vec2u, number: u32) -> vec2f {
     let draw = random_pair(stream, number);
     if zones[zone] == DISC {
         let r = value(zone + 3u) * sqrt(draw.x);
@@ -96,27 +96,27 @@ fn any_place(zone: u32, stream: vec2u, number: u32) -> vec2f {
     return pair(first);
 }
 
-fn within_bounds(place: vec2f) -> vec2f {
-    return clamp(place, parameters.bounds.xz, parameters.bounds.yw);
+fn within_bounds(position: vec2f) -> vec2f {
+    return clamp(position, parameters.bounds.xz, parameters.bounds.yw);
 }
 
-fn deep(particle: Particle, place: vec2f) -> f32 {
-    return particle.volume * spline(distance(place, particle.place), 1.0 / parameters.new_h);
+fn deep(particle: Particle, position: vec2f) -> f32 {
+    return particle.volume * spline(distance(position, particle.position), 1.0 / parameters.new_h);
 }
 
 // Height of the surface by the plain kernel sum: low where particles leave a gap. `spawned` is the range of new particles.
-fn surface_height(place: vec2f, spawned: vec2u) -> f32 {
-    var height = ground_at(place).x;
-    let cells = cells_round(parameters.grid, place, 2.0 * parameters.new_h);
+fn surface_height(position: vec2f, spawned: vec2u) -> f32 {
+    var height = ground_at(position).x;
+    let cells = cells_round(parameters.grid, position, 2.0 * parameters.new_h);
     // The particles stand in the order of the last sort, in cells that they have drifted away from but little.
     for (var row = cells.y; row <= cells.w; row++) {
         let line = row * parameters.grid.columns;
         for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
-            height += deep(unpacked(particles[j]), place);
+            height += deep(unpacked(particles[j]), position);
         }
     }
     for (var j = spawned.x; j < spawned.y; j++) {
-        height += deep(unpacked(particles[j]), place);
+        height += deep(unpacked(particles[j]), position);
     }
     return height;
 }
@@ -133,15 +133,15 @@ fn lowest(thread: u32, spawned: vec2u) -> vec2f {
             best = k;
         }
     }
-    let place = tried[best];
+    let position = tried[best];
     workgroupBarrier();
-    return place;
+    return position;
 }
 
 // Adds a new particle; the caller has checked that there is room for it.
-fn spawn(number: u32, place: vec2f, velocity: vec2f) {
+fn spawn(number: u32, position: vec2f, velocity: vec2f) {
     var particle = Particle();
-    particle.place = place;
+    particle.position = position;
     particle.velocity = velocity;
     particle.volume = parameters.new_volume;
     particle.h = parameters.new_h;
@@ -183,11 +183,11 @@ fn main(@builtin(local_invocation_index) thread: u32) {
             break;
         }
         if thread < SPAWN_CANDIDATES {
-            tried[thread] = within_bounds(any_place(spawn_requests[now.request].zone, vec2u(status.next_id, 0u), thread));
+            tried[thread] = within_bounds(any_position(spawn_requests[now.request].zone, vec2u(status.next_id, 0u), thread));
         }
-        let place = lowest(thread, vec2u(now.older, now.particles));
+        let position = lowest(thread, vec2u(now.older, now.particles));
         if thread == 0u {
-            spawn(now.particles, place, spawn_requests[now.request].velocity);
+            spawn(now.particles, position, spawn_requests[now.request].velocity);
             turn.particles += 1u;
             turn.request += 1u;
         }

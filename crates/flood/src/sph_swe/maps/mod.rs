@@ -121,8 +121,8 @@ impl Maps {
     /// The highest level at each cell, m; not-a-number where it was never wet.
     fn levels(&self, terrain: &Terrain) -> Vec<f32> {
         let grid = terrain.map_grid();
-        let level = |(place, cell): (usize, &Record)| {
-            let [x, y] = grid.centre(place % self.columns, place / self.columns);
+        let level = |(index, cell): (usize, &Record)| {
+            let [x, y] = grid.centre(index % self.columns, index / self.columns);
             if cell.max_depth > 0.0 { (terrain.height(x, y) + f64::from(cell.max_depth)) as f32 } else { f32::NAN }
         };
         self.cells.par_iter().enumerate().map(level).collect()

@@ -19,7 +19,7 @@ pub(in crate::sph_swe) const SHADER: Shader = ("sph_maps", include_str!("sph_map
 pub(in crate::sph_swe) struct GpuMaps {
     /// The cells that may become wet, by their numbers in the maps, and where they are.
     numbers: Vec<u32>,
-    places: Vec<[f32; 2]>,
+    positions: Vec<[f32; 2]>,
     pub wet_depth: f64,
     task: Task,
 }
@@ -37,10 +37,10 @@ impl GpuMaps {
 
     /// The cells in the device's format.
     fn packed(&self, maps: &Maps) -> Vec<MapCell> {
-        let cell = |(number, place): (&u32, &[f32; 2])| {
+        let cell = |(number, position): (&u32, &[f32; 2])| {
             let record = maps.record(*number as usize);
             MapCell {
-                place: *place,
+                position: *position,
                 max_depth: record.max_depth,
                 max_speed: record.max_speed,
                 hazard: record.hazard,
@@ -50,7 +50,7 @@ impl GpuMaps {
                 unused: 0.0,
             }
         };
-        self.numbers.iter().zip(&self.places).map(cell).collect()
+        self.numbers.iter().zip(&self.positions).map(cell).collect()
     }
 
     async fn download(&self, gpu: &Gpu, cells: &wgpu::Buffer, maps: &mut Maps) -> Result<(), GpuError> {
@@ -82,7 +82,7 @@ fn cells<'a>(
 impl OnGpu {
     /// Keeps maps on the device from now on, if memory and threads suffice.
     pub fn keep_maps(&mut self, terrain: &Terrain, obstacles: &Obstacles, maps: &Maps) -> Result<(), GpuError> {
-        let (numbers, places): (Vec<u32>, Vec<[f32; 2]>) = cells(terrain, obstacles, self.origin).unzip();
+        let (numbers, positions): (Vec<u32>, Vec<[f32; 2]>) = cells(terrain, obstacles, self.origin).unzip();
         let cells = match storage::<MapCell>(self.gpu(), "cells of maps", numbers.len()) {
             Err(GpuError::Memory { .. }) => return Ok(()),
             cells => cells?,
@@ -92,7 +92,7 @@ impl OnGpu {
         }
         self.tasks.memory.map_cells = cells;
         let task = task(self.gpu(), SHADER, &self.tasks.memory);
-        self.tasks.maps = Some(GpuMaps { numbers, places, wet_depth: maps.wet_depth(), task });
+        self.tasks.maps = Some(GpuMaps { numbers, positions, wet_depth: maps.wet_depth(), task });
         Ok(())
     }
 

@@ -7,7 +7,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     var cell = map_cells[id.x];
-    let water = water_at(cell.place);
+    let water = water_at(cell.position);
     if !(water.x > status.wet_depth) {
         return;
     }

@@ -4,7 +4,7 @@ use super::boundaries::{EdgeRules, GhostSide};
 use corpuscle_sph::{Cells, FEWEST, NeighbourLists};
 use rayon::prelude::*;
 
-/// One place in the arrangement: a particle itself, or its ghost particle beyond an edge.
+/// One entry of the arrangement: a particle itself, or its ghost particle beyond an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
     /// The particle, as numbered before arranging.
@@ -26,17 +26,17 @@ pub struct Arrangement {
     pub cells: Cells<2>,
     /// Neighbour lists over particles and ghost particles.
     pub lists: NeighbourLists,
-    /// What stands at each place of the sorted order.
+    /// What stands at each index of the sorted order.
     pub entries: Vec<Entry>,
-    /// The place of each particle, in sorted order.
+    /// The index of each particle, in sorted order.
     pub real: Vec<u32>,
-    /// The particle at each place, in sorted order; [`GHOST`] for a ghost particle.
+    /// The particle at each index, in sorted order; [`GHOST`] for a ghost particle.
     pub particle: Vec<u32>,
-    /// The ghost particles: their place and the place of the particle that they show.
+    /// The ghost particles: their index and the index of the particle that they show.
     pub ghosts: Vec<(u32, u32)>,
-    /// Places, sorted.
+    /// Positions, sorted.
     pub x: Vec<f64>,
-    /// Places, sorted.
+    /// Positions, sorted.
     pub y: Vec<f64>,
     /// Squares of the reaches, sorted.
     pub reach_squared: Vec<f64>,
@@ -51,7 +51,7 @@ struct Unsorted {
     x: Vec<f64>,
     y: Vec<f64>,
     reach: Vec<f64>,
-    place_of: Vec<u32>,
+    index_of: Vec<u32>,
 }
 
 impl Arrangement {
@@ -67,8 +67,8 @@ impl Arrangement {
         for values in [&mut before.x, &mut before.y, &mut before.reach] {
             values.resize(particles.len(), 0.0);
         }
-        let places = before.x.par_iter_mut().zip(&mut before.y).zip(&mut before.reach).zip(particles);
-        places.with_min_len(FEWEST).for_each(|(((x, y), reach), particle)| (*x, *y, *reach) = reaching(particle));
+        let positions = before.x.par_iter_mut().zip(&mut before.y).zip(&mut before.reach).zip(particles);
+        positions.with_min_len(FEWEST).for_each(|(((x, y), reach), particle)| (*x, *y, *reach) = reaching(particle));
         before.add_ghosts(edges);
         let order = self.cells.sort([&before.x, &before.y], [cell_size; 2]);
         gather(&mut self.x, order, &before.x);
@@ -86,7 +86,7 @@ impl Arrangement {
         self.tell_apart(count);
     }
 
-    /// Finds which places hold particles and which ghost particles.
+    /// Finds which indices hold particles and which ghost particles.
     fn tell_apart(&mut self, count: usize) {
         self.ghosts.clear();
         if count == self.entries.len() {
@@ -94,31 +94,31 @@ impl Arrangement {
             self.particle.clone_from(&self.real);
             return;
         }
-        let place_of = &mut self.unsorted.place_of;
-        place_of.resize(count, 0);
+        let index_of = &mut self.unsorted.index_of;
+        index_of.resize(count, 0);
         self.real.clear();
         self.particle.clear();
-        for (place, entry) in self.entries.iter().enumerate() {
+        for (index, entry) in self.entries.iter().enumerate() {
             if entry.ghost == GhostSide::NONE {
-                place_of[entry.from as usize] = place as u32;
+                index_of[entry.from as usize] = index as u32;
                 self.particle.push(self.real.len() as u32);
-                self.real.push(place as u32);
+                self.real.push(index as u32);
             } else {
                 self.particle.push(GHOST);
-                self.ghosts.push((place as u32, entry.from));
+                self.ghosts.push((index as u32, entry.from));
             }
         }
-        self.ghosts.iter_mut().for_each(|(_, shown)| *shown = place_of[*shown as usize]);
+        self.ghosts.iter_mut().for_each(|(_, shown)| *shown = index_of[*shown as usize]);
     }
 
     /// Brings `particles` into sorted order, by way of `spare`.
     pub fn sort<T: Copy + Send + Sync>(&self, particles: &mut Vec<T>, spare: &mut Vec<T>) {
-        let from = |&place: &u32| particles[self.entries[place as usize].from as usize];
+        let from = |&index: &u32| particles[self.entries[index as usize].from as usize];
         self.real.par_iter().with_min_len(FEWEST).map(from).collect_into_vec(spare);
         std::mem::swap(particles, spare);
     }
 
-    /// Places in the arrangement: particles and ghost particles.
+    /// Number of entries: particles and ghost particles.
     pub fn len(&self) -> usize {
         self.entries.len()
     }

@@ -13,7 +13,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             particle.h = particle.next_h;
         }
         sorted[i] = packed(particle);
-        spots[i] = vec4f(particle.place, particle.volume, particle.h);
+        spots[i] = vec4f(particle.position, particle.volume, particle.h);
     }
     if i == 0u {
         status.particles = left;

@@ -21,15 +21,15 @@ impl SphSweSolver {
             .zip(&arrangement.real)
             .filter(|(particle, _)| obstacles.may_reach([particle.x, particle.y]));
         near_walls.clear();
-        near_walls.extend(near.map(|(_, &place)| place));
-        let particle = |place: u32| &particles[arrangement.particle[place as usize] as usize];
-        let push = |&place: &u32| push_of_walls(parameters, obstacles, particle(place));
+        near_walls.extend(near.map(|(_, &index)| index));
+        let particle = |index: u32| &particles[arrangement.particle[index as usize] as usize];
+        let push = |&index: &u32| push_of_walls(parameters, obstacles, particle(index));
         near_walls.par_iter().map(push).collect_into_vec(of_walls);
-        for (&place, &(push, obstacle)) in near_walls.iter().zip(&*of_walls) {
+        for (&index, &(push, obstacle)) in near_walls.iter().zip(&*of_walls) {
             let Some(obstacle) = obstacle else { continue };
-            let particle = particle(place);
+            let particle = particle(index);
             for axis in 0..2 {
-                accelerations[place as usize][axis] += push[axis];
+                accelerations[index as usize][axis] += push[axis];
                 if particle.outside.is_none() {
                     on_obstacles[obstacle][axis] -= particle.volume * push[axis];
                 }

@@ -12,15 +12,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let own = columns[i];
     var push = vec2f(0.0);
     var obstacle = 0u;
-    if is_near(parameters.walls, own.place, own.h) {
+    if is_near(parameters.walls, own.position, own.h) {
         // a = -sum_k rho0 V_k (p_i / rho_i^2) grad W_ik (Akinci et al. 2012, equation 9).
         let strength = parameters.rest_density * own.pressure / (own.density * own.density);
         var nearest = own.h;
-        let cells = cells_round(parameters.walls, own.place, own.h);
+        let cells = cells_round(parameters.walls, own.position, own.h);
         for (var row = cells.y; row <= cells.w; row++) {
             let line = row * parameters.walls.columns;
             for (var k = site_start[line + cells.x]; k < site_start[line + cells.z + 1u]; k++) {
-                let way = sites[k].place - own.place;
+                let way = sites[k].position - own.position;
                 let r = length(way);
                 if r >= own.h {
                     continue;

@@ -51,13 +51,13 @@ fn sites(obstacles: &Obstacles, origin: Origin, reach: f64) -> (Grid, Vec<u32>, 
     let size = 0.25 * reach;
     let grid = grid(low, high, size, origin);
     let cell = |site: &WallSite| {
-        let index = [0, 1].map(|axis| ((site.place[axis] - grid.corner[axis]) * grid.per_cell).max(0.0) as u32);
+        let index = [0, 1].map(|axis| ((site.position[axis] - grid.corner[axis]) * grid.per_cell).max(0.0) as u32);
         index[1].min(grid.rows - 1) * grid.columns + index[0].min(grid.columns - 1)
     };
     let mut sites: Vec<WallSite> = all
         .iter()
         .map(|site| WallSite {
-            place: origin.relative([site.x, site.y]),
+            position: origin.relative([site.x, site.y]),
             area: site.area as f32,
             obstacle: site.obstacle as u32,
             volume: site.volume as f32,

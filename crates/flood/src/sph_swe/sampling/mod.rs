@@ -36,22 +36,22 @@ impl Sampler<'_> {
     /// The particles whose cells come within `reach` of (x, y), and some more.
     pub fn near(&self, x: f64, y: f64, reach: f64) -> impl Iterator<Item = &Particle> {
         let ranges = (!self.particles.is_empty()).then(|| self.arrangement.cells.ranges([x, y], reach));
-        let places = ranges.into_iter().flatten().flat_map(|range| &self.arrangement.particle[range]);
-        places.filter(|&&k| k != GHOST).map(|&k| &self.particles[k as usize])
+        let indices = ranges.into_iter().flatten().flat_map(|range| &self.arrangement.particle[range]);
+        indices.filter(|&&k| k != GHOST).map(|&k| &self.particles[k as usize])
     }
 
     /// The share of the surroundings of (x, y) that ghost particles beyond walls and periodic sides cover.
     fn covered_by_ghosts(&self, x: f64, y: f64) -> f64 {
         let Arrangement { cells, particle, ghosts, x: at_x, y: at_y, .. } = self.arrangement;
-        let places = cells.ranges([x, y], SEARCH_MARGIN * cells.reach_at([x, y])).flatten();
-        let weight = |place: usize| {
-            let ghost = ghosts.binary_search_by_key(&(place as u32), |(ghost, _)| *ghost).ok()?;
+        let indices = cells.ranges([x, y], SEARCH_MARGIN * cells.reach_at([x, y])).flatten();
+        let weight = |index: usize| {
+            let ghost = ghosts.binary_search_by_key(&(index as u32), |(ghost, _)| *ghost).ok()?;
             let shown = &self.particles[particle[ghosts[ghost].1 as usize] as usize];
             let h = SAMPLED * shown.h;
-            let distance = (x - at_x[place]).hypot(y - at_y[place]);
+            let distance = (x - at_x[index]).hypot(y - at_y[index]);
             (distance < 2.0 * h).then(|| shown.area() * CubicSpline::<2>::new(h).value_at(distance))
         };
-        places.filter(|place| particle[*place] == GHOST).filter_map(weight).sum()
+        indices.filter(|index| particle[*index] == GHOST).filter_map(weight).sum()
     }
 
     /// The position, when the particles were arranged, of the water that is at (x, y) now: in a fast step it moves farther than their support.
