@@ -35,7 +35,7 @@ pub(super) fn grading(
             ..Obstacle::default()
         };
         let polygons = polygons(&area, terrain, folder)?;
-        let line: Vec<_> = finer.line.iter().flatten().map(|place| terrain.to_model(*place)).collect();
+        let line: Vec<_> = finer.line.iter().flatten().map(|position| terrain.to_model(*position)).collect();
         check_region(number, finer.within_m, &polygons, &line, terrain)?;
         let along = line.windows(2).map(|pair| [pair[0], pair[1]]);
         let walls = of_outlines(outlines).chain(lines.iter().copied()).map(|wall| wall.ends);

@@ -345,7 +345,7 @@ impl VoronoiFlood {
         let half_width = 2.0 * self.solver.mesh.layout.spacing();
         let lines = self.settings.edge_line.iter().flat_map(|line| line.line.windows(2));
         let band = |ends: &[[f64; 2]]| Zone::Band {
-            line: ends.iter().map(|place| self.terrain.to_model(*place)).collect(),
+            line: ends.iter().map(|position| self.terrain.to_model(*position)).collect(),
             half_width,
         };
         lines.flat_map(|ends| Patch::tiles(&band(ends), &self.solver.mesh)).collect()
@@ -397,7 +397,7 @@ impl VoronoiFlood {
         self.state.records.resize(mesh.len(), DRY);
         let borders = &self.solver.borders[self.obstacle_of.len()..];
         let at = |border: &u32| mesh.obstacle_faces.binary_search_by_key(border, |(face, _)| *face).ok();
-        let obstacles = borders.iter().map(|border| at(border).map(|place| mesh.obstacle_faces[place].1));
+        let obstacles = borders.iter().map(|border| at(border).map(|index| mesh.obstacle_faces[index].1));
         self.obstacle_of.extend(obstacles.map(|obstacle| obstacle.unwrap_or(NONE)));
         self.solver.crests = walls::crests(mesh);
         self.boundaries.extend(&self.solver, &self.terrain);

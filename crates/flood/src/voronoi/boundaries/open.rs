@@ -175,7 +175,7 @@ impl Boundaries {
             let rule = face.border().filter(|side| *side != SOLID).map(|side| {
                 if side == LINE {
                     let of_line = mesh.line_faces.binary_search_by_key(&border, |(face, _)| *face);
-                    let line = of_line.map_or(0, |place| mesh.line_faces[place].1);
+                    let line = of_line.map_or(0, |index| mesh.line_faces[index].1);
                     return (4 + self.parts.len()) as u16 + line as u16;
                 }
                 let side = usize::from(side);

@@ -147,9 +147,9 @@ impl Weather {
             for [x, y] in &mesh.centroid[self.factors.len()..] {
                 let factor = raster.bilinear(*x, *y).unwrap_or(0.0);
                 if factor < 0.0 {
-                    let place = terrain.to_own([*x, *y]);
+                    let position = terrain.to_own([*x, *y]);
                     let path = path.display();
-                    return Err(setup(format!("{path}: the factor of rain at {place:?} must not be negative")));
+                    return Err(setup(format!("{path}: the factor of rain at {position:?} must not be negative")));
                 }
                 self.factors.push(factor as f32);
             }
