@@ -4,16 +4,16 @@ use crate::error::setup;
 use corpuscle_model::ModelError;
 use corpuscle_terrain::{Bounds, Terrain};
 
-/// Refuses places in the terrain's own coordinates that lie outside it.
-pub(crate) fn check_inside(what: &str, places: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
-    let is_outside = |place: &&[f64; 2]| {
-        let [x, y] = terrain.to_model(**place);
+/// Refuses positions in the terrain's own coordinates that lie outside it.
+pub(crate) fn check_inside(what: &str, positions: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
+    let is_outside = |position: &&[f64; 2]| {
+        let [x, y] = terrain.to_model(**position);
         !terrain.bounds().contains(x, y)
     };
-    match places.iter().find(is_outside) {
+    match positions.iter().find(is_outside) {
         None => Ok(()),
-        Some(place) => Err(setup(format!(
-            "{what} has the point {place:?}, which lies outside the terrain: that spans {}",
+        Some(position) => Err(setup(format!(
+            "{what} has the point {position:?}, which lies outside the terrain: that spans {}",
             span(terrain)
         ))),
     }

@@ -13,7 +13,7 @@ pub(crate) fn rectangle_round(polygon: &[[f64; 2]]) -> Bounds {
     })
 }
 
-/// Whether a polygon holds a place: an odd number of sides crosses the ray eastwards.
+/// Whether a polygon holds a position: an odd number of sides crosses the ray eastwards.
 pub(crate) fn is_inside(polygon: &[[f64; 2]], x: f64, y: f64) -> bool {
     let mut inside = false;
     let mut before = polygon[polygon.len() - 1];

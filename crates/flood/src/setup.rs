@@ -27,13 +27,13 @@ pub(crate) fn sources(
     let source = |inflow: &corpuscle_scene::Inflow| {
         let discharge = inflow.load_discharge(folder).map_err(setup)?;
         let largest = discharge.rows().iter().map(|row| row[1]).fold(0.0, f64::max);
-        let places: Vec<[f64; 2]> = match (&inflow.at, &inflow.line) {
+        let positions: Vec<[f64; 2]> = match (&inflow.at, &inflow.line) {
             (Some(at), _) => vec![*at],
             (_, Some(line)) => line.clone(),
             (None, None) => Vec::new(),
         };
-        check_inside(&format!("the inflow '{}'", inflow.name), &places, terrain)?;
-        let points: Vec<_> = places.into_iter().map(|place| terrain.to_model(place)).collect();
+        check_inside(&format!("the inflow '{}'", inflow.name), &positions, terrain)?;
+        let points: Vec<_> = positions.into_iter().map(|position| terrain.to_model(position)).collect();
         let zone = match points.as_slice() {
             [] => return Err(setup(format!("the inflow '{}' has neither a point nor a line", inflow.name))),
             [at] => Zone::at(*at, largest, spacing),

@@ -17,12 +17,12 @@ use std::path::Path;
 /// Samples of the depth along each side of a body of water, from which its volume is computed.
 const DEPTH_SAMPLES_PER_SIDE: usize = 200;
 
-/// Water that is there at the start, as functions of the place in model coordinates.
+/// Water that is there at the start, as functions of the position in model coordinates.
 pub struct InitialWater<'a> {
     /// Depth, m; 0 or less where there is none. Goes on beyond `inside` where it can: the rim of the body is then cut out
     /// of a larger arrangement and stands as close as its middle.
     pub depth: Box<dyn Fn(f64, f64) -> f64 + Sync + 'a>,
-    /// Whether a place belongs to this body of water.
+    /// Whether a position belongs to this body of water.
     pub inside: Box<dyn Fn(f64, f64) -> bool + Sync + 'a>,
     /// A rectangle round it.
     pub within: Bounds,
@@ -87,40 +87,40 @@ impl InitialWater<'_> {
         let high = [self.within.x_max.min(bounds.x_max), self.within.y_max.min(bounds.y_max)];
         let part = [0, 1].map(|axis| (high[axis] - low[axis]) / DEPTH_SAMPLES_PER_SIDE as f64);
         let at = |axis: usize, sample: usize| low[axis] + (sample as f64 + 0.5) * part[axis];
-        let places = (0..DEPTH_SAMPLES_PER_SIDE * DEPTH_SAMPLES_PER_SIDE)
+        let positions = (0..DEPTH_SAMPLES_PER_SIDE * DEPTH_SAMPLES_PER_SIDE)
             .map(|sample| [at(0, sample % DEPTH_SAMPLES_PER_SIDE), at(1, sample / DEPTH_SAMPLES_PER_SIDE)]);
-        let depths = places.filter(|[x, y]| (self.inside)(*x, *y)).map(|[x, y]| (self.depth)(x, y).max(0.0));
+        let depths = positions.filter(|[x, y]| (self.inside)(*x, *y)).map(|[x, y]| (self.depth)(x, y).max(0.0));
         depths.sum::<f64>() * part[0] * part[1]
     }
 }
 
-/// The mean depth of the water at the start over the places it covers, m; none where there is no water.
+/// The mean depth of the water at the start over the positions it covers, m; none where there is no water.
 pub(crate) fn mean_depth(bodies: &[InitialWater], terrain: &Terrain) -> Option<f64> {
     let grid = terrain.map_grid();
-    let (mut sum, mut places) = (0.0, 0_u32);
+    let (mut sum, mut count) = (0.0, 0_u32);
     for row in 0..grid.rows {
         for column in 0..grid.columns {
             let [x, y] = grid.centre(column, row);
             for body in bodies {
                 if (body.inside)(x, y) && (body.depth)(x, y) > 0.0 {
                     sum += (body.depth)(x, y);
-                    places += 1;
+                    count += 1;
                 }
             }
         }
     }
-    (places > 0).then(|| sum / f64::from(places))
+    (count > 0).then(|| sum / f64::from(count))
 }
 
 /// How close particles of `volume` m3 stand where the water at the start is deepest, at most `spacing`, m.
 pub(crate) fn closest(bodies: &[InitialWater], terrain: &Terrain, spacing: f64, volume: f64) -> f64 {
     let grid = terrain.map_grid();
-    let places = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
+    let cells = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
     let depth = |(column, row)| {
         let [x, y] = grid.centre(column, row);
         let depths = bodies.iter().filter(|body| (body.inside)(x, y)).map(|body| (body.depth)(x, y));
         depths.fold(0.0, f64::max)
     };
-    let deepest = places.map(depth).fold(0.0, f64::max);
+    let deepest = cells.map(depth).fold(0.0, f64::max);
     if deepest > 0.0 { (volume / deepest).sqrt().min(spacing) } else { spacing }
 }

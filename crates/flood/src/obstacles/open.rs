@@ -47,7 +47,7 @@ pub(crate) fn open(flood: &Flood, terrain: &Terrain, folder: &Path, reach: f64) 
 
 /// The polygons of an obstacle, in model coordinates.
 pub(crate) fn polygons(obstacle: &Obstacle, terrain: &Terrain, folder: &Path) -> Result<Vec<Polygon>, ModelError> {
-    let to_model = |ring: Vec<[f64; 2]>| ring.into_iter().map(|place| terrain.to_model(place)).collect();
+    let to_model = |ring: Vec<[f64; 2]>| ring.into_iter().map(|position| terrain.to_model(position)).collect();
     if let Some(polygon) = &obstacle.polygon {
         return Ok(vec![vec![to_model(polygon.clone())]]);
     }

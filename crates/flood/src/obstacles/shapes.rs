@@ -103,15 +103,15 @@ mod tests {
         let terrain = Terrain::analytic(bounds, 1.0, |x, _| (0.5 * x, [0.5, 0.0]));
         let shape = upright(Outline { obstacle: 0, rings: vec![angle] }, &terrain, 3.0).unwrap();
         assert_eq!(shape.bounds, [[0.0; 3], [4.0, 3.0, 5.0]]);
-        let places = [
+        let positions = [
             ([0.5, 2.0, 2.0], -0.5),
             ([2.0, 2.0, 2.0], 1.0),
             ([-3.0, 4.0, 2.0], 10f64.sqrt()),
             ([3.0, 0.25, 2.0], -0.25),
             ([0.5, 2.0, 7.0], 2.0),
         ];
-        for (place, distance) in places {
-            assert!(((shape.distance)(place) - distance).abs() < 1e-12, "{place:?}");
+        for (position, distance) in positions {
+            assert!(((shape.distance)(position) - distance).abs() < 1e-12, "{position:?}");
         }
     }
 

@@ -47,7 +47,7 @@ pub(crate) fn no_data(terrain: &Terrain) -> Vec<Wall> {
     let (columns, rows) = (grid.columns, grid.rows);
     let mut walls = Vec::new();
     let mut add = |from: [usize; 2], to: [usize; 2]| {
-        let corner = |[column, row]: [usize; 2]| grid.place([column as f64 - 0.5, row as f64 - 0.5]);
+        let corner = |[column, row]: [usize; 2]| grid.point([column as f64 - 0.5, row as f64 - 0.5]);
         walls.push(Wall { ends: [corner(from), corner(to)], kind: WallKind::Plain, crest: [f64::INFINITY; 2] });
     };
     // Sides between a row and the next, then between a column and the next.
