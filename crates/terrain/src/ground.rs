@@ -122,8 +122,8 @@ fn metric(raster: Raster, grid: &MapGrid) -> Surface {
 
 /// The rectangle round the cells of a raster that is not turned against the model's axes.
 fn outside(grid: &MapGrid) -> Bounds {
-    let [x_min, y_max] = grid.place([-0.5, -0.5]);
-    let [x_max, y_min] = grid.place([grid.columns as f64 - 0.5, grid.rows as f64 - 0.5]);
+    let [x_min, y_max] = grid.point([-0.5, -0.5]);
+    let [x_max, y_min] = grid.point([grid.columns as f64 - 0.5, grid.rows as f64 - 0.5]);
     Bounds { x_min, x_max, y_min, y_max }
 }
 
@@ -134,7 +134,7 @@ fn inside(grid: &MapGrid) -> Result<Bounds, String> {
     let along = |from: [f64; 2], to: [f64; 2]| {
         (0..=STEPS).map(move |step| {
             let t = step as f64 / STEPS as f64;
-            grid.place([from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])])
+            grid.point([from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])])
         })
     };
     let corners = [[-0.5, -0.5], [last_column, -0.5], [-0.5, last_row], [last_column, last_row]];
@@ -146,7 +146,7 @@ fn inside(grid: &MapGrid) -> Result<Bounds, String> {
         y_max: along(north_west, north_east).map(|[_, y]| y).fold(f64::INFINITY, f64::min),
     };
     let [width, height] = bounds.size();
-    let finite = corners.iter().flat_map(|corner| grid.place(*corner)).all(f64::is_finite);
+    let finite = corners.iter().flat_map(|corner| grid.point(*corner)).all(f64::is_finite);
     if finite && width > 0.0 && height > 0.0 {
         Ok(bounds)
     } else {
@@ -174,8 +174,8 @@ fn resampled(raster: Raster, bounds: Bounds, grid: &MapGrid) -> Surface {
         .with_min_len(1024)
         .map(|index| {
             let (column, row) = (index % count[0], index / count[0]);
-            let place = [first[0] + column as f64 * cell[0], first[1] + row as f64 * cell[1]];
-            let [longitude, latitude] = grid.frame.to_own(place);
+            let position = [first[0] + column as f64 * cell[0], first[1] + row as f64 * cell[1]];
+            let [longitude, latitude] = grid.frame.to_own(position);
             own.height_and_slope(longitude, latitude).0
         })
         .collect();

@@ -6,7 +6,7 @@ use crate::terrain::{Ground, Terrain};
 
 impl Terrain {
     /// Mean height of the ground over a convex polygon, m: the integral of [`Terrain::height`] over the polygon,
-    /// divided by its area. Beyond the bounds the ground has the height of the nearest place inside, as everywhere.
+    /// divided by its area. Beyond the bounds the ground has the height of the nearest position inside, as everywhere.
     ///
     /// `polygon` holds the corners in model coordinates, m, in counter-clockwise order, the first not repeated at the
     /// end.
@@ -44,7 +44,7 @@ impl Terrain {
         (mean, lowest.min(mean), highest.max(mean))
     }
 
-    /// Whether the cell of the map grid that holds a place in model coordinates, m, has data; false outside the grid
+    /// Whether the cell of the map grid that holds a position in model coordinates, m, has data; false outside the grid
     /// and for a coordinate that is not a number. See [`Terrain::is_valid_cell`].
     pub fn has_data_at(&self, x: f64, y: f64) -> bool {
         let MapGrid { columns, rows, .. } = self.map_grid;

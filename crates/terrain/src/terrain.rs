@@ -99,12 +99,12 @@ impl Terrain {
         self.bounds
     }
 
-    /// Height of the ground, m. Outside the bounds that of the nearest place inside.
+    /// Height of the ground, m. Outside the bounds that of the nearest position inside.
     pub fn height(&self, x: f64, y: f64) -> f64 {
         self.height_and_slope(x, y).0
     }
 
-    /// [`Self::height`], for places far from each other: nothing is kept for looking at places beside them, as the
+    /// [`Self::height`], for positions far from each other: nothing is kept for looking at positions beside them, as the
     /// others do. Slower where the ground has not been looked at, and takes no memory.
     pub fn height_once(&self, x: f64, y: f64) -> f64 {
         let [x, y] = self.bounds.nearest(x, y);
@@ -129,7 +129,7 @@ impl Terrain {
         }
     }
 
-    /// Height of the ground, m, and its slope `[dz/dx, dz/dy]`. Outside the bounds those of the nearest place inside.
+    /// Height of the ground, m, and its slope `[dz/dx, dz/dy]`. Outside the bounds those of the nearest position inside.
     #[inline]
     pub fn height_and_slope(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
         let [x, y] = self.bounds.nearest(x, y);
@@ -139,7 +139,7 @@ impl Terrain {
         }
     }
 
-    /// [`Self::height_and_slope`] at many places at once, to the same bits and far quicker: heights, m, dz/dx and dz/dy.
+    /// [`Self::height_and_slope`] at many positions at once, to the same bits and far quicker: heights, m, dz/dx and dz/dy.
     /// `N` is a multiple of [`corpuscle_simd::LANES`].
     pub fn heights_and_slopes<const N: usize>(&self, x: &[f64; N], y: &[f64; N]) -> [[f64; N]; 3] {
         const { assert!(N.is_multiple_of(LANES)) };
@@ -188,9 +188,9 @@ impl Terrain {
     }
 
     /// From the terrain's own coordinates (longitude and latitude in degrees for a geographic one) to model metres.
-    /// Not-a-number for a place that a geographic terrain's local projection cannot show, half the Earth away.
-    pub fn to_model(&self, place: [f64; 2]) -> [f64; 2] {
-        self.map_grid.frame.to_model(place)
+    /// Not-a-number for a position that a geographic terrain's local projection cannot show, half the Earth away.
+    pub fn to_model(&self, position: [f64; 2]) -> [f64; 2] {
+        self.map_grid.frame.to_model(position)
     }
 
     /// From model metres to the terrain's own coordinates.
@@ -201,7 +201,7 @@ impl Terrain {
     /// From longitude and latitude, degrees (WGS 84), to model metres.
     ///
     /// # Errors
-    /// [`TerrainError::NoReferenceSystem`] where the terrain has no known place on Earth, [`TerrainError::Place`]
+    /// [`TerrainError::NoReferenceSystem`] where the terrain has no known position on Earth, [`TerrainError::Position`]
     /// where its reference system does not reach.
     pub fn from_lon_lat(&self, lon_lat: [f64; 2]) -> Result<[f64; 2], TerrainError> {
         self.map_grid.frame.lon_lat_to_model(lon_lat)

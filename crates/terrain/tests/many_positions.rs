@@ -1,4 +1,4 @@
-//! Heights and slopes of many places at once are those of the places one by one.
+//! Heights and slopes of many positions at once are those of the positions one by one.
 
 use corpuscle_terrain::{Bounds, Terrain};
 
