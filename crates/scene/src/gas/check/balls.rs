@@ -36,10 +36,10 @@ impl Check {
         self.colour(key, ball.colour.as_deref())?;
         self.fits(&format!("{key}.radius"), ball.radius, &gas.size, "the box")?;
         for axis in Axis::ALL.into_iter().take(gas.dimensions()) {
-            let (place, length) = (ball.position[axis.index()], gas.size[axis.index()]);
+            let (position, length) = (ball.position[axis.index()], gas.size[axis.index()]);
             // Half of a ball may stand beyond a periodic side; its centre may not.
             let margin = if *gas.walls.along(axis)[0] == Wall::Periodic { 0.0 } else { ball.radius };
-            self.require(&format!("{key}.position"), place >= margin && place <= length - margin, || {
+            self.require(&format!("{key}.position"), position >= margin && position <= length - margin, || {
                 format!(
                     "the ball must lie inside the box: its centre from {margin} to {} along {axis:?}",
                     length - margin
@@ -61,9 +61,9 @@ impl Check {
         let turns = if *gas.walls.along(Axis::X)[0] == Wall::Periodic { 2 } else { 1 };
         for (rank, &one) in order.iter().enumerate() {
             let others = (rank + 1..turns * order.len()).take(order.len() - 1);
-            for place in others {
-                let other = order[place % order.len()];
-                let turn = if place >= order.len() { gas.size[0] } else { 0.0 };
+            for index in others {
+                let other = order[index % order.len()];
+                let turn = if index >= order.len() { gas.size[0] } else { 0.0 };
                 if gas.ball[other].position[0] + turn - gas.ball[one].position[0] > gas.ball[one].radius + largest {
                     break;
                 }

@@ -163,7 +163,7 @@ impl Check {
             self.require(&key, corner.len() == others.len(), || {
                 format!("must have {} numbers, one for each axis but that of the partition", others.len())
             })?;
-            let inside = corner.iter().zip(&others).all(|(&place, &length)| (0.0..=length).contains(&place));
+            let inside = corner.iter().zip(&others).all(|(&position, &length)| (0.0..=length).contains(&position));
             self.require(&key, inside, || format!("must lie inside the box, between 0 and {others:?}"))?;
         }
         self.require("gas.partition.hole.to", hole.from.iter().zip(&hole.to).all(|(from, to)| from < to), || {
