@@ -1,14 +1,13 @@
 //! The terrain of a flood.
 
 use crate::Error;
-use corpuscle_scene::Terrain as Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 
 /// The terrain of a scene; that of `[terrain.fetch]` from the cache, or over the network at first use.
-pub(crate) fn ground(scene: &Scene, seed: u64, folder: &Path) -> Result<Terrain, Error> {
+pub(crate) fn ground(scene: &corpuscle_scene::Terrain, seed: u64, folder: &Path) -> Result<Terrain, Error> {
     #[cfg(feature = "fetch")]
-    if let Scene::Fetch(scene) = scene {
+    if let corpuscle_scene::Terrain::Fetch(scene) = scene {
         let fetched = fetched(scene, &corpuscle_fetch::FetchObserver::none())?;
         return Ok(Terrain::from_raster(fetched.raster, Path::new("Copernicus GLO-30"), scene.no_data)?);
     }
@@ -23,7 +22,7 @@ pub(crate) fn ground(scene: &Scene, seed: u64, folder: &Path) -> Result<Terrain,
 #[cfg(feature = "fetch")]
 pub fn fetch_terrain(scene: &corpuscle_scene::Scene, observer: &corpuscle_fetch::FetchObserver) -> Result<u64, Error> {
     match scene.flood().map(|scene| &scene.terrain) {
-        Some(Scene::Fetch(scene)) => Ok(fetched(scene, observer)?.bytes),
+        Some(corpuscle_scene::Terrain::Fetch(scene)) => Ok(fetched(scene, observer)?.bytes),
         _ => Ok(0),
     }
 }

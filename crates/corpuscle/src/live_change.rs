@@ -1,7 +1,6 @@
 //! Live changes: changes of a running scene.
 
 use corpuscle_dew::LiveChange as Dew;
-use corpuscle_flood::LiveChange as Flood;
 use corpuscle_gas::LiveChange as Gas;
 use corpuscle_model::{Model, ModelError};
 use serde::{Deserialize, Serialize};
@@ -12,7 +11,7 @@ pub enum LiveChange {
     /// Of a gas.
     Gas(Gas),
     /// Of a flood.
-    Flood(Flood),
+    Flood(corpuscle_flood::LiveChange),
     /// Of dew.
     Dew(Dew),
 }
@@ -23,8 +22,8 @@ impl From<Gas> for LiveChange {
     }
 }
 
-impl From<Flood> for LiveChange {
-    fn from(change: Flood) -> Self {
+impl From<corpuscle_flood::LiveChange> for LiveChange {
+    fn from(change: corpuscle_flood::LiveChange) -> Self {
         Self::Flood(change)
     }
 }

@@ -2,7 +2,7 @@
 
 use corpuscle_flood::{Filling, InitialWater, SphSweFlood, StartWater, VoronoiFlood};
 use corpuscle_model::Model;
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning, Scheme};
+use corpuscle_scene::{Edge, Edges, Flood, Manning, Scheme};
 use corpuscle_terrain::{Bounds, Terrain};
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
@@ -20,8 +20,8 @@ fn terrain() -> Arc<Terrain> {
     Arc::new(Terrain::gridded(BOUNDS, 2.0, |x, y| 0.2 * (0.31 * x).sin() * (0.23 * y).cos()))
 }
 
-fn settings(scheme: Scheme) -> Settings {
-    Settings {
+fn settings(scheme: Scheme) -> Flood {
+    Flood {
         scheme,
         spacing_m: Some(1.0),
         spacing_depth_m: Some(1.0),
@@ -29,7 +29,7 @@ fn settings(scheme: Scheme) -> Settings {
         edges: Edges { west: Edge::Wall, east: Edge::Wall, south: Edge::Wall, north: Edge::Wall },
         // Never again after the start: the step alone is measured.
         map_every_s: Some(1e9),
-        ..Settings::default()
+        ..Flood::default()
     }
 }
 

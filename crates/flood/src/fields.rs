@@ -1,13 +1,14 @@
 //! What a scene says of the water at the start as functions of the position in model coordinates, m: numbers, expressions, rasters.
 
-use crate::setup::{is_inside, setup};
+use crate::error::setup;
+use crate::polygon::is_inside;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Field, Flood as Settings, StartVelocity, Water};
+use corpuscle_scene::{Field, Flood, StartVelocity, Water};
 use corpuscle_terrain::{RasterField, Terrain};
 use std::path::Path;
 
 /// A function of the position in model coordinates, m.
-pub(crate) type OfPosition<'a, T> = Box<dyn Fn(f64, f64) -> T + Sync + 'a>;
+pub type OfPosition<'a, T> = Box<dyn Fn(f64, f64) -> T + Sync + 'a>;
 
 /// An expression is tried in so many positions at most.
 const MOST_TRIALS: usize = 250_000;
@@ -54,7 +55,7 @@ pub(crate) fn block_velocity<'a>(velocity: &StartVelocity, terrain: &'a Terrain)
 }
 
 /// Refuses expressions that are not a finite number somewhere: at the centres of the terrain's cells, or of some of them, inside the body's polygon.
-pub(crate) fn check(scene: &Settings, terrain: &Terrain) -> Result<(), ModelError> {
+pub(crate) fn check(scene: &Flood, terrain: &Terrain) -> Result<(), ModelError> {
     let bodies = scene.water.iter().enumerate();
     bodies.into_iter().try_for_each(|(number, water)| check_body(&format!("flood.water.{number}"), water, terrain))
 }

@@ -55,11 +55,11 @@ impl LineGauge {
     }
 
     /// The positions that it samples.
-    pub fn places(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+    pub fn positions(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.pieces.iter().map(|(at, _)| *at)
     }
 
-    /// Discharge, m3/s, of the water at these places.
+    /// Discharge, m3/s, of the water at these positions.
     pub fn discharge(&self, water: &[Sample]) -> f64 {
         let through = |(sample, (_, right)): (&Sample, &([f64; 2], [f64; 2]))| {
             sample.depth * (sample.velocity[0] * right[0] + sample.velocity[1] * right[1])

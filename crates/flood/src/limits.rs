@@ -1,9 +1,12 @@
-//! Limits of scenes: positions on the terrain, and no more particles than fit in memory.
+//! Limits of scenes: no more particles than fit in memory, and no deeper water than there is.
 
-use crate::setup::{InitialWater, initial_water, lattice, setup};
+use crate::error::setup;
+use crate::extent::check_inside;
+use crate::initial_water::{InitialWater, initial_water};
+use crate::setup::lattice;
 use corpuscle_model::ModelError;
 use corpuscle_scene::Flood;
-use corpuscle_terrain::{Bounds, Terrain};
+use corpuscle_terrain::Terrain;
 use std::path::Path;
 
 /// More particles than this do not fit in the memory of usual machines.
@@ -14,9 +17,6 @@ const MOST_CELLS_OF_TERRAIN: f64 = 1e11;
 
 /// Water is not deeper than this on average, m: nine times the deepest sea.
 const MOST_DEPTH: f64 = 1e5;
-
-/// Samples of the depth along each side of a body of water, from which its volume is computed.
-const DEPTH_SAMPLES_PER_SIDE: usize = 200;
 
 /// Refuses bodies of water and blocks that would take too many particles of `volume` m3, `spacing` m apart in blocks.
 pub(crate) fn check_count(
@@ -80,26 +80,6 @@ pub(crate) fn check_depths(scene: &Flood, terrain: &Terrain, folder: &Path) -> R
     Ok(())
 }
 
-impl InitialWater<'_> {
-    /// Area of the rectangle round it within bounds, m2.
-    fn area(&self, bounds: Bounds) -> f64 {
-        let east = self.within.x_max.min(bounds.x_max) - self.within.x_min.max(bounds.x_min);
-        east * (self.within.y_max.min(bounds.y_max) - self.within.y_min.max(bounds.y_min))
-    }
-
-    /// About how much water it holds, m3.
-    fn volume(&self, bounds: Bounds) -> f64 {
-        let low = [self.within.x_min.max(bounds.x_min), self.within.y_min.max(bounds.y_min)];
-        let high = [self.within.x_max.min(bounds.x_max), self.within.y_max.min(bounds.y_max)];
-        let part = [0, 1].map(|axis| (high[axis] - low[axis]) / DEPTH_SAMPLES_PER_SIDE as f64);
-        let at = |axis: usize, sample: usize| low[axis] + (sample as f64 + 0.5) * part[axis];
-        let places = (0..DEPTH_SAMPLES_PER_SIDE * DEPTH_SAMPLES_PER_SIDE)
-            .map(|sample| [at(0, sample % DEPTH_SAMPLES_PER_SIDE), at(1, sample / DEPTH_SAMPLES_PER_SIDE)]);
-        let depths = places.filter(|[x, y]| (self.inside)(*x, *y)).map(|[x, y]| (self.depth)(x, y).max(0.0));
-        depths.sum::<f64>() * part[0] * part[1]
-    }
-}
-
 /// Refuses blocks that reach beyond the terrain, where there is no ground for them to fall onto, and those of too many particles.
 pub(crate) fn check_blocks(scene: &Flood, terrain: &Terrain) -> Result<(), ModelError> {
     for (number, water) in scene.water.iter().enumerate() {
@@ -107,26 +87,4 @@ pub(crate) fn check_blocks(scene: &Flood, terrain: &Terrain) -> Result<(), Model
         check_inside(&format!("flood.water.{number}.block"), &[block.from, block.to], terrain)?;
     }
     scene.spacing_m.map_or(Ok(()), |spacing| check_particles(falling(scene, terrain, spacing)))
-}
-
-/// Refuses places in the terrain's own coordinates that lie outside it.
-pub(crate) fn check_inside(what: &str, places: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
-    let is_outside = |place: &&[f64; 2]| {
-        let [x, y] = terrain.to_model(**place);
-        !terrain.bounds().contains(x, y)
-    };
-    match places.iter().find(is_outside) {
-        None => Ok(()),
-        Some(place) => Err(setup(format!(
-            "{what} has the point {place:?}, which lies outside the terrain: that spans {}",
-            span(terrain)
-        ))),
-    }
-}
-
-/// The terrain's extent in its own coordinates, for messages.
-pub(crate) fn span(terrain: &Terrain) -> String {
-    let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
-    let ([west, south], [east, north]) = (terrain.to_own([x_min, y_min]), terrain.to_own([x_max, y_max]));
-    format!("x from {west} to {east} and y from {south} to {north}")
 }

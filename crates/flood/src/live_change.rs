@@ -1,7 +1,7 @@
 //! Live changes of a flood: what is changed while it runs.
 
 use crate::as_flood_mut;
-use crate::setup::setup;
+use crate::error::setup;
 use corpuscle_model::ModelError;
 use serde::{Deserialize, Serialize};
 use std::any::Any;

@@ -1,8 +1,8 @@
-//! The water at a place.
+//! The water at a position.
 
 use serde::{Deserialize, Serialize};
 
-/// The water at a place.
+/// The water at a position.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Depth, m; 0 where it is dry.

@@ -4,7 +4,7 @@ use crate::sampling::Sample;
 use crate::{LiveChange, SphSweFlood, VoronoiFlood, limits};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_processes::Processes;
-use corpuscle_scene::{Flood as Settings, Scheme};
+use corpuscle_scene::{Flood, Scheme};
 use corpuscle_terrain::Terrain;
 use std::any::Any;
 use std::path::Path;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// A flood of any scheme.
 pub trait FloodModel: Model {
     /// The `[flood]` of the scene with every default that depends on ground and water filled in.
-    fn settings(&self) -> &Settings;
+    fn settings(&self) -> &Flood;
 
     /// The water at a position in model coordinates, m, at the time shown.
     fn sample(&self, x: f64, y: f64) -> Sample;
@@ -42,7 +42,7 @@ pub trait FloodModel: Model {
 /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
 pub fn open(
     processes: &Processes,
-    settings: &Settings,
+    settings: &Flood,
     seed: u64,
     folder: &Path,
     terrain: Arc<Terrain>,
@@ -67,7 +67,7 @@ pub fn open(
 /// As [`open`].
 pub fn open_to_restore(
     processes: &Processes,
-    settings: &Settings,
+    settings: &Flood,
     seed: u64,
     folder: &Path,
     terrain: Arc<Terrain>,
@@ -108,7 +108,7 @@ pub fn as_flood_mut(model: &mut dyn Any) -> Option<&mut dyn FloodModel> {
 }
 
 impl FloodModel for SphSweFlood {
-    fn settings(&self) -> &Settings {
+    fn settings(&self) -> &Flood {
         Self::settings(self)
     }
 
@@ -130,7 +130,7 @@ impl FloodModel for SphSweFlood {
 }
 
 impl FloodModel for VoronoiFlood {
-    fn settings(&self) -> &Settings {
+    fn settings(&self) -> &Flood {
         Self::settings(self)
     }
 

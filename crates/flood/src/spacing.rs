@@ -1,9 +1,10 @@
 //! The spacing of particles that is taken where a scene gives none.
 
-use crate::setup::{initial_water, load, setup};
-use crate::voronoi;
+use crate::error::setup;
+use crate::initial_water::{self, initial_water};
+use crate::series::load;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Flood as Settings, Series};
+use corpuscle_scene::{Edge, Flood, Series};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 
@@ -34,7 +35,7 @@ pub struct DefaultSpacing {
 /// # Errors
 /// [`ModelError::Setup`] where a file of the scene cannot be used.
 pub fn default_spacing(
-    settings: &Settings,
+    settings: &Flood,
     terrain: &Terrain,
     folder: &Path,
     until: f64,
@@ -47,7 +48,7 @@ pub fn default_spacing(
 }
 
 /// Fills in the spacing of settings that give none, as if nothing came in, and gives the spacing, m.
-pub(crate) fn resolve(settings: &mut Settings, terrain: &Terrain, folder: &Path) -> Result<f64, ModelError> {
+pub(crate) fn resolve(settings: &mut Flood, terrain: &Terrain, folder: &Path) -> Result<f64, ModelError> {
     let spacing = match settings.spacing_m {
         Some(spacing) => spacing,
         None => default_spacing(settings, terrain, folder, 0.0)?.spacing,
@@ -70,12 +71,12 @@ impl std::fmt::Display for DefaultSpacing {
 }
 
 /// Ground that is under water at the start or is to be until a time, m2, by an estimate: see [`default_spacing`].
-fn wet_area(settings: &Settings, terrain: &Terrain, folder: &Path, until: f64) -> Result<f64, ModelError> {
+fn wet_area(settings: &Flood, terrain: &Terrain, folder: &Path, until: f64) -> Result<f64, ModelError> {
     let [east, north] = terrain.bounds().size();
     if settings.rain.is_some() {
         return Ok(east * north);
     }
-    let bodies = voronoi::of_scene(settings, terrain, folder)?;
+    let bodies = initial_water::of_scene(settings, terrain, folder)?;
     let highest = highest_level(settings, folder, 0.0, until)?;
     let grid = terrain.map_grid();
     let stride = ((grid.columns * grid.rows) as f64 / MOST_SAMPLES as f64).sqrt().ceil().max(1.0) as usize;
@@ -107,7 +108,7 @@ const DEPTH_OF_RAIN: f64 = 0.02;
 ///
 /// # Errors
 /// [`ModelError::Setup`] where a file of the scene cannot be used.
-pub fn usual_depth(settings: &Settings, terrain: &Terrain, folder: &Path) -> Result<f64, ModelError> {
+pub fn usual_depth(settings: &Flood, terrain: &Terrain, folder: &Path) -> Result<f64, ModelError> {
     if let Some(depth) = settings.spacing_depth_m {
         return Ok(depth);
     }
@@ -134,7 +135,7 @@ pub fn usual_depth(settings: &Settings, terrain: &Terrain, folder: &Path) -> Res
 }
 
 /// The highest level that is held at a side or within the ground from a time until another, m; minus infinity where none is.
-pub(crate) fn highest_level(settings: &Settings, folder: &Path, from: f64, until: f64) -> Result<f64, ModelError> {
+pub(crate) fn highest_level(settings: &Flood, folder: &Path, from: f64, until: f64) -> Result<f64, ModelError> {
     let mut highest = f64::NEG_INFINITY;
     let mut see = |level: &Series| -> Result<(), ModelError> {
         let table = load(level, folder)?;
@@ -157,7 +158,7 @@ pub(crate) fn highest_level(settings: &Settings, folder: &Path, from: f64, until
 }
 
 /// Water that inflows and sides bring from a time until another, m3.
-pub(crate) fn inflow_volume(settings: &Settings, folder: &Path, from: f64, until: f64) -> Result<f64, ModelError> {
+pub(crate) fn inflow_volume(settings: &Flood, folder: &Path, from: f64, until: f64) -> Result<f64, ModelError> {
     let mut volume = 0.0;
     for inflow in &settings.inflow {
         volume += inflow.load_discharge(folder).map_err(setup)?.integral(from, until);
@@ -170,7 +171,7 @@ pub(crate) fn inflow_volume(settings: &Settings, folder: &Path, from: f64, until
     Ok(volume.max(0.0))
 }
 
-fn edges(settings: &Settings) -> impl Iterator<Item = &Edge> {
+fn edges(settings: &Flood) -> impl Iterator<Item = &Edge> {
     let edges = &settings.edges;
     let parts = settings.edge_part.iter().map(|part| &part.edge);
     let lines = settings.edge_line.iter().map(|line| &line.edge);

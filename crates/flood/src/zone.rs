@@ -1,6 +1,6 @@
-//! Places where water comes in, is held, or goes out.
+//! Zones where water comes in, is held, or goes out.
 
-use crate::setup::is_inside;
+use crate::polygon::is_inside;
 use corpuscle_scene::Table;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -42,7 +42,7 @@ impl Zone {
         Self::Band { line, half_width: needed.max(spacing) }
     }
 
-    /// A place in it, at random.
+    /// A position in it, at random.
     pub fn any(&self, random: &mut ChaCha8Rng) -> [f64; 2] {
         match self {
             Self::Disc { centre, radius } => {
@@ -82,7 +82,7 @@ impl Zone {
         }
     }
 
-    /// Whether it holds a place.
+    /// Whether it holds a position.
     pub fn contains(&self, x: f64, y: f64) -> bool {
         match self {
             Self::Disc { centre, radius } => distance(*centre, [x, y]) <= *radius,
@@ -95,12 +95,12 @@ impl Zone {
 
     /// A disc round all of it: its middle and radius.
     pub fn round(&self) -> ([f64; 2], f64) {
-        let (places, margin) = match self {
+        let (positions, margin) = match self {
             Self::Disc { centre, radius } => return (*centre, *radius),
             Self::Band { line, half_width } => (line, *half_width),
             Self::Polygon(corners) => (corners, 0.0),
         };
-        let [low, high] = rectangle(places);
+        let [low, high] = rectangle(positions);
         let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));
         (middle, 0.5 * distance(low, high) + margin)
     }
@@ -111,18 +111,18 @@ impl Zone {
     }
 }
 
-fn rectangle(places: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let low = [0, 1].map(|axis| places.iter().map(|place| place[axis]).fold(f64::INFINITY, f64::min));
-    let high = [0, 1].map(|axis| places.iter().map(|place| place[axis]).fold(f64::NEG_INFINITY, f64::max));
+fn rectangle(positions: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let low = [0, 1].map(|axis| positions.iter().map(|position| position[axis]).fold(f64::INFINITY, f64::min));
+    let high = [0, 1].map(|axis| positions.iter().map(|position| position[axis]).fold(f64::NEG_INFINITY, f64::max));
     [low, high]
 }
 
-/// Distance of a place from the straight piece between two others, m.
-fn from_piece(a: [f64; 2], b: [f64; 2], place: [f64; 2]) -> f64 {
-    let [along, to] = [b, place].map(|end| [end[0] - a[0], end[1] - a[1]]);
+/// Distance of a position from the straight piece between two others, m.
+fn from_piece(a: [f64; 2], b: [f64; 2], position: [f64; 2]) -> f64 {
+    let [along, to] = [b, position].map(|end| [end[0] - a[0], end[1] - a[1]]);
     let part = (to[0] * along[0] + to[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]);
     let part = part.clamp(0.0, 1.0);
-    distance(place, [a[0] + part * along[0], a[1] + part * along[1]])
+    distance(position, [a[0] + part * along[0], a[1] + part * along[1]])
 }
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -135,7 +135,7 @@ mod tests {
     use rand::SeedableRng;
 
     #[test]
-    fn places_lie_in_their_zone() {
+    fn positions_lie_in_their_zone() {
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let disc = Zone::at([3.0, 4.0], 2.0, 0.1);
         let band = Zone::along(vec![[0.0, 0.0], [10.0, 0.0], [10.0, 20.0]], 3.0, 0.5);
@@ -151,7 +151,7 @@ mod tests {
         assert!((550..750).contains(&first), "{first} {second}");
     }
     #[test]
-    fn zones_hold_the_places_in_them() {
+    fn zones_hold_the_positions_in_them() {
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let bay = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [5.0, 4.0], [0.0, 10.0]];
         let zones =
@@ -159,8 +159,8 @@ mod tests {
         for zone in &zones {
             let ([x, y], reach) = zone.round();
             for _ in 0..500 {
-                let place = zone.any(&mut random);
-                assert!(zone.contains(place[0], place[1]) && distance(place, [x, y]) <= reach);
+                let position = zone.any(&mut random);
+                assert!(zone.contains(position[0], position[1]) && distance(position, [x, y]) <= reach);
             }
             assert!(!zone.contains(5.0, 6.0) || zone.reach() < 5.0);
         }

@@ -73,7 +73,7 @@ fn go(flood: &mut SphSweFlood, time: f64) {
     flood.advance_to(time, &AtomicBool::new(false)).unwrap();
 }
 
-/// Beyond a wall there are ghost particles of the water, and so the place before it is not half dry.
+/// Beyond a wall there are ghost particles of the water, and so the position before it is not half dry.
 #[test]
 fn water_reaches_up_to_walls_and_periodic_sides() {
     let basin = r#"

@@ -158,7 +158,7 @@ fn by_id(flood: &SphSweFlood) -> Vec<Particle> {
     particles
 }
 
-/// Largest differences over all particles: place, m; velocity, m/s; depth, m.
+/// Largest differences over all particles: position, m; velocity, m/s; depth, m.
 fn differences(a: &SphSweFlood, b: &SphSweFlood) -> [f64; 3] {
     let (a, b) = (by_id(a), by_id(b));
     assert_eq!(a.len(), b.len(), "particles");

@@ -35,7 +35,7 @@ name = "tower"
 circle = { centre = [27, 18], radius_m = 4 }
 "#;
 
-/// Distance of a place from the walls of the block and of the tower, m; negative inside.
+/// Distance of a position from the walls of the block and of the tower, m; negative inside.
 fn distance([x, y]: [f64; 2]) -> f64 {
     let tower = (x - 27.0).hypot(y - 18.0) - 4.0;
     let corners = [[10.0, 8.0], [17.0, 11.0], [15.0, 16.0], [8.0, 13.0]];
@@ -62,8 +62,8 @@ fn no_water_comes_into_obstacles() {
     let mut flood = bore();
     for look in 1..=40 {
         go(&mut flood, 0.25 * f64::from(look));
-        let places = flood.particles().iter().map(|particle| [particle.x, particle.y]);
-        let deepest = places.map(distance).fold(f64::INFINITY, f64::min);
+        let positions = flood.particles().iter().map(|particle| [particle.x, particle.y]);
+        let deepest = positions.map(distance).fold(f64::INFINITY, f64::min);
         assert!(deepest > -1e-3, "{deepest} m at {} s", flood.time());
     }
     let balance = &flood.ledger().balances[0];

@@ -47,7 +47,7 @@ fn go(flood: &mut VoronoiFlood, time: f64) {
     flood.advance_to(time, &AtomicBool::new(false)).unwrap();
 }
 
-/// Rough ground, its highest places above 2 m.
+/// Rough ground, its highest positions above 2 m.
 fn rough(seed: u64, highest: f64) -> impl Fn(f64, f64) -> f64 + Sync {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let heights: Vec<f64> = (0..41 * 21).map(|_| random.random_range(0.0..highest)).collect();
@@ -343,7 +343,7 @@ fn what_cannot_follow_the_water_is_told() {
     assert!(error.is_some_and(|error| error.to_string().contains("flood.adaptive.finest_m is 30")));
 }
 
-/// What comes in by an inflow comes in at its place, and what a held level takes goes from its own, whatever becomes of the cells.
+/// What comes in by an inflow comes in at its position, and what a held level takes goes from its own, whatever becomes of the cells.
 #[test]
 fn inflows_and_held_levels_stay_in_their_places() {
     let keys = format!(

@@ -40,8 +40,8 @@ fn go(flood: &mut VoronoiFlood, time: f64) {
 
 /// Parts anywhere: a circle, a line, the ground along a building and a wall of no thickness.
 fn parts(random: &mut ChaCha8Rng) -> String {
-    let mut place = || [random.random_range(0.0..60.0), random.random_range(0.0..36.0)];
-    let [centre, from, to, wall, building] = [(); 5].map(|()| place());
+    let mut position = || [random.random_range(0.0..60.0), random.random_range(0.0..36.0)];
+    let [centre, from, to, wall, building] = [(); 5].map(|()| position());
     let [x, y] = building.map(|x: f64| x.min(30.0));
     format!(
         "[[flood.obstacle]]\nname = \"house\"\npolygon = [[{x}, {y}], [{}, {}], [{}, {}]]\n\
@@ -106,8 +106,8 @@ fn finer_cells_make_a_wave_better() {
     let graded =
         run("spacing_m = 1.2\nfiner = [{ spacing_m = 0.3, polygon = [[24, -1], [61, -1], [61, 37], [24, 37]] }]");
     let error = |of: &VoronoiFlood, [from, to]: [f64; 2]| {
-        let places = (0..400).map(|k| (from + (k % 20) as f64 / 20.0 * (to - from), 3.0 + (k / 20) as f64 * 1.5));
-        (places.map(|(x, y)| (of.sample(x, y).depth - fine.sample(x, y).depth).powi(2)).sum::<f64>() / 400.0).sqrt()
+        let positions = (0..400).map(|k| (from + (k % 20) as f64 / 20.0 * (to - from), 3.0 + (k / 20) as f64 * 1.5));
+        (positions.map(|(x, y)| (of.sample(x, y).depth - fine.sample(x, y).depth).powi(2)).sum::<f64>() / 400.0).sqrt()
     };
     let [inside, outside] = [[45.0, 58.0], [2.0, 14.0]];
     let [coarse_inside, coarse_outside] = [inside, outside].map(|part| error(&coarse, part));

@@ -79,8 +79,8 @@ fn fewer_steps_give_the_same_flood() {
             assert!(balance.relative_error().abs() < most, "{balance:?}");
         }
         let apart = |other: &VoronoiFlood| {
-            let places = (0..7200).map(|k| [f64::from(k % 120) + 0.5, f64::from(k / 120) + 0.5]);
-            places.map(|[x, y]| (global.sample(x, y).depth - other.sample(x, y).depth).abs()).sum::<f64>()
+            let positions = (0..7200).map(|k| [f64::from(k % 120) + 0.5, f64::from(k / 120) + 0.5]);
+            positions.map(|[x, y]| (global.sample(x, y).depth - other.sample(x, y).depth).abs()).sum::<f64>()
         };
         assert!(apart(&local) > 0.0 && apart(&local) < 0.1 * apart(&finer), "{} {}", apart(&local), apart(&finer));
     }

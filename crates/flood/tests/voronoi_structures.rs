@@ -112,8 +112,8 @@ fn a_held_polygon_keeps_a_pool_at_its_level() {
     for (time, level) in [(200.0, 1.5), (400.0, 1.0)] {
         go(&mut flood, time);
         // Outside the polygon.
-        let places = (0..20).map(|k| [16.0 + f64::from(k % 4) * 1.5, 3.0 + f64::from(k / 4) * 6.0]);
-        let mean = places.map(|[x, y]| flood.sample(x, y).depth).sum::<f64>() / 20.0;
+        let positions = (0..20).map(|k| [16.0 + f64::from(k % 4) * 1.5, 3.0 + f64::from(k / 4) * 6.0]);
+        let mean = positions.map(|[x, y]| flood.sample(x, y).depth).sum::<f64>() / 20.0;
         assert!((mean - level).abs() < 0.03, "at {time} s {mean} for {level}");
     }
 }

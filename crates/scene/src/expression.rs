@@ -358,8 +358,8 @@ mod tests {
     }
 
     #[test]
-    fn errors_tell_the_place_and_what_to_write() {
-        for (text, place, what) in [
+    fn errors_tell_the_position_and_what_to_write() {
+        for (text, position, what) in [
             ("", 1, "ends here"),
             ("2 +", 4, "ends here"),
             ("2 x", 3, "an operator"),
@@ -374,7 +374,7 @@ mod tests {
             ("* 4", 1, "`*` stands where"),
         ] {
             let error = Expression::parse(text).unwrap_err();
-            assert!(error.at == place && error.what.contains(what), "{text}: {error}");
+            assert!(error.at == position && error.what.contains(what), "{text}: {error}");
         }
         assert!(Expression::parse(&"(".repeat(1900)).unwrap_err().what.contains("nested"));
         assert!(Expression::parse(&"-".repeat(1900)).unwrap_err().what.contains("nested"));

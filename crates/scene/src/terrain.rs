@@ -32,7 +32,7 @@ pub enum Terrain {
 pub struct TerrainFile {
     /// The file, relative to the scene's folder.
     pub path: PathBuf,
-    /// The reference system where the file names none: `EPSG:27700` or a PROJ string. Left out: metres without a place
+    /// The reference system where the file names none: `EPSG:27700` or a PROJ string. Left out: metres without a position
     /// on Earth, with a warning.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crs: Option<String>,
@@ -176,7 +176,7 @@ pub struct Bump {
     pub height_m: f64,
     /// Standard deviation of the bump, m.
     pub width_m: f64,
-    /// Place of the top `[x, y]`. Left out: the middle.
+    /// Position of the top `[x, y]`. Left out: the middle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 2]>,
 }

@@ -96,7 +96,7 @@ fn full(terrain: Terrain) -> Scene {
     };
     let rasters = StartVelocity::Rasters(VelocityRasters { east: "a".into(), north: "a".into() });
     let in_the_air = Water { block: Some(block), velocity_m_per_s: rasters, ..water.clone() };
-    let place = Some([0.0; 2]);
+    let position = Some([0.0; 2]);
     let flood = Flood {
         scheme: Scheme::Voronoi,
         units: FloodUnits::Si,
@@ -124,14 +124,14 @@ fn full(terrain: Terrain) -> Scene {
         water: vec![water, in_the_air],
         inflow: vec![Inflow {
             name: "a".into(),
-            at: place,
+            at: position,
             line: Some(vec![[0.0; 2]]),
             discharge_m3_per_s: Series::Constant(1.0),
             velocity_m_per_s: [0.0; 2],
         }],
         outflow: vec![Outflow {
             name: "a".into(),
-            at: place,
+            at: position,
             line: Some(vec![[0.0; 2]]),
             polygon: Some(vec![[0.0; 2]]),
             rating: vec![[0.0; 2]],
@@ -164,7 +164,7 @@ fn full(terrain: Terrain) -> Scene {
             within_m: 1.0,
         }],
         adaptive: Some(Adaptive { finest_m: 1.0, rise_over_depth: 1.0, fronts: true, every_steps: 1 }),
-        gauge: vec![Gauge { name: "a".into(), at: place, lon_lat: place }],
+        gauge: vec![Gauge { name: "a".into(), at: position, lon_lat: position }],
         section: vec![Section { name: "a".into(), line: vec![[0.0; 2]] }],
         observed_extent: Some("a".into()),
     };

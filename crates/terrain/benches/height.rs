@@ -6,8 +6,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::path::Path;
 
-/// Places all over the terrain, in no order, as those of particles after a while.
-fn places(terrain: &Terrain) -> Vec<[f64; 2]> {
+/// Positions all over the terrain, in no order, as those of particles after a while.
+fn positions(terrain: &Terrain) -> Vec<[f64; 2]> {
     let [length, width] = terrain.bounds().size();
     (0..4096_u32)
         .map(|i| [f64::from(i * 2_654 % 4096), f64::from(i * 1_597 % 4096)])
@@ -17,12 +17,12 @@ fn places(terrain: &Terrain) -> Vec<[f64; 2]> {
 
 fn height_and_slope(criterion: &mut Criterion) {
     let terrain = Terrain::open(&corpuscle_scene::Terrain::Valley(Valley::default()), 1, Path::new(".")).unwrap();
-    let places = places(&terrain);
+    let positions = positions(&terrain);
     let mut next = 0;
     criterion.bench_function("height_and_slope", |bencher| {
         bencher.iter(|| {
-            next = (next + 1) % places.len();
-            let [x, y] = places[next];
+            next = (next + 1) % positions.len();
+            let [x, y] = positions[next];
             terrain.height_and_slope(black_box(x), black_box(y))
         });
     });

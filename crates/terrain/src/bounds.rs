@@ -36,7 +36,7 @@ impl Bounds {
         [0.5 * (self.x_min + self.x_max), 0.5 * (self.y_min + self.y_max)]
     }
 
-    /// The place inside nearest to `(x, y)`; the south-west corner's coordinate for one that is not a number.
+    /// The point inside nearest to `(x, y)`; the south-west corner's coordinate for one that is not a number.
     pub(crate) fn nearest(&self, x: f64, y: f64) -> [f64; 2] {
         // `max` before `min`: not-a-number becomes the smallest coordinate.
         [x.max(self.x_min).min(self.x_max), y.max(self.y_min).min(self.y_max)]

@@ -89,11 +89,10 @@ mod tests {
 
     #[test]
     fn what_comes_back_is_the_same_to_the_bit() {
-        let place = [[250.0, 4000.0, 7.5], [10.0, 47.0, 0.001]];
-        for (crs, place) in
-            [None, Some("EPSG:32632"), Some("EPSG:4326")].into_iter().zip([place[0], place[0], place[1]])
+        let grids = [[250.0, 4000.0, 7.5], [10.0, 47.0, 0.001]];
+        for (crs, grid) in [None, Some("EPSG:32632"), Some("EPSG:4326")].into_iter().zip([grids[0], grids[0], grids[1]])
         {
-            let terrain = terrain(crs, place);
+            let terrain = terrain(crs, grid);
             let back = Terrain::from_bytes(&terrain.to_bytes().unwrap()).unwrap();
             assert_eq!(back.bounds, terrain.bounds);
             assert_eq!((&back.valid, &back.warnings), (&terrain.valid, &terrain.warnings));

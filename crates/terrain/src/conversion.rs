@@ -1,10 +1,10 @@
-//! Places and boxes from one reference system to another.
+//! Positions and boxes from one reference system to another.
 
 use crate::frame::convert;
 use crate::{MapBox, ReferenceSystem};
 use proj4rs::Proj;
 
-/// Places on each side of a box that are converted to find the box round it in another system.
+/// Points on each side of a box that are converted to find the box round it in another system.
 const SAMPLES_PER_EDGE: usize = 16;
 
 /// From one reference system to another; `None` where they are the same.
@@ -30,16 +30,16 @@ impl Conversion {
         }
     }
 
-    /// True where places stay as they are.
+    /// True where positions stay as they are.
     pub fn is_none(&self) -> bool {
         self.0.is_none()
     }
 
-    /// The error says why the place has no counterpart.
-    pub fn place(&self, place: [f64; 2]) -> Result<[f64; 2], String> {
+    /// The error says why the position has no counterpart.
+    pub fn convert(&self, position: [f64; 2]) -> Result<[f64; 2], String> {
         match &self.0 {
-            Some((from, to)) => convert(from, to, place),
-            None => Ok(place),
+            Some((from, to)) => convert(from, to, position),
+            None => Ok(position),
         }
     }
 
@@ -54,8 +54,9 @@ impl Conversion {
         let level = along(part.west, part.east).flat_map(|x| [[x, part.south], [x, part.north]]);
         let upright = along(part.south, part.north).flat_map(|y| [[part.west, y], [part.east, y]]);
         let mut all: Option<MapBox> = None;
-        for place in level.chain(upright) {
-            let [x, y] = self.place(place).map_err(|what| format!("its place {place:?} does not convert: {what}"))?;
+        for position in level.chain(upright) {
+            let [x, y] =
+                self.convert(position).map_err(|what| format!("its place {position:?} does not convert: {what}"))?;
             let point = MapBox { west: x, south: y, east: x, north: y };
             all = Some(all.map_or(point, |all| all.with(point)));
         }

@@ -57,11 +57,11 @@ pub enum TerrainError {
          terrain's own coordinates, or name the reference system of a terrain file with `crs` in [terrain.file]"
     )]
     NoReferenceSystem,
-    /// A place that the reference system cannot express.
-    #[error("the place {place:?} cannot be converted to or from longitude and latitude: {what}")]
-    Place {
+    /// A position that the reference system cannot express.
+    #[error("the place {position:?} cannot be converted to or from longitude and latitude: {what}")]
+    Position {
         /// The coordinates given.
-        place: [f64; 2],
+        position: [f64; 2],
         /// Why.
         what: String,
     },

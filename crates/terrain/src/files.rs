@@ -77,25 +77,25 @@ fn without_repeats(warnings: Vec<(&Path, String)>) -> Vec<String> {
 
 /// Settles the reference system from what the file and the scene say; returns a warning, if any.
 pub(crate) fn choose_system(
-    place: &mut Georeference,
+    georeference: &mut Georeference,
     crs: Option<&str>,
     path: &Path,
 ) -> Result<Vec<String>, TerrainError> {
     let named = crs.map(ReferenceSystem::parse).transpose()?;
     let file = path.display();
     let mut warnings = Vec::new();
-    match (&place.system, named) {
+    match (&georeference.system, named) {
         (Some(own), Some(named)) if own.name != named.name => warnings.push(format!(
             "{file} is in {}; the scene's crs = \"{}\" is for files that name none, and is not used.",
             own.name, named.name
         )),
-        (None, Some(named)) => *place = place.clone().with_system(named),
+        (None, Some(named)) => *georeference = georeference.clone().with_system(named),
         (None, None) => warnings.push(format!(
             "{file} names no reference system: its coordinates are taken as metres without a place on Earth. Name it \
              with `crs` in [terrain.file] if you know it."
         )),
         (Some(_), _) => {}
     }
-    warnings.extend(place.system.as_ref().and_then(ReferenceSystem::warning));
+    warnings.extend(georeference.system.as_ref().and_then(ReferenceSystem::warning));
     Ok(warnings)
 }

@@ -23,7 +23,7 @@ enum Kind {
 }
 
 impl Frame {
-    /// Model coordinates are own coordinates in metres; no place on Earth.
+    /// Model coordinates are own coordinates in metres; no position on Earth.
     pub(crate) fn plain() -> Self {
         Self { kind: Kind::Scaled(1.0), own: None, wgs_84: wgs_84() }
     }
@@ -42,7 +42,7 @@ impl Frame {
     /// The frame of a grid of so many columns and rows, centred on it.
     pub(crate) fn of_grid(georeference: &Georeference, size: [usize; 2]) -> Result<Self, String> {
         let Some(system) = &georeference.system else { return Ok(Self::plain()) };
-        let centre = georeference.place(size.map(|count| 0.5 * count as f64 - 0.5));
+        let centre = georeference.point(size.map(|count| 0.5 * count as f64 - 0.5));
         if system.geographic && !(centre[0].abs() <= 360.0 && centre[1].abs() <= 89.0) {
             return Err(format!(
                 "its middle {centre:?} is no longitude and latitude in degrees, which its reference system {} wants",
@@ -61,10 +61,10 @@ impl Frame {
     }
 
     /// Not-a-number where the projection does not reach.
-    pub(crate) fn to_model(&self, place: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn to_model(&self, position: [f64; 2]) -> [f64; 2] {
         match (&self.kind, &self.own) {
-            (Kind::Scaled(metres), _) => place.map(|value| value * metres),
-            (Kind::Projected(local), Some(own)) => convert(own, local, place).unwrap_or([f64::NAN; 2]),
+            (Kind::Scaled(metres), _) => position.map(|value| value * metres),
+            (Kind::Projected(local), Some(own)) => convert(own, local, position).unwrap_or([f64::NAN; 2]),
             (Kind::Projected(_), None) => [f64::NAN; 2],
         }
     }
@@ -80,16 +80,17 @@ impl Frame {
 
     pub(crate) fn lon_lat_to_model(&self, lon_lat: [f64; 2]) -> Result<[f64; 2], TerrainError> {
         let own = self.own.as_ref().ok_or(TerrainError::NoReferenceSystem)?;
-        let place = convert(&self.wgs_84, own, lon_lat).map_err(|what| TerrainError::Place { place: lon_lat, what })?;
-        Ok(self.to_model(place))
+        let position =
+            convert(&self.wgs_84, own, lon_lat).map_err(|what| TerrainError::Position { position: lon_lat, what })?;
+        Ok(self.to_model(position))
     }
 
     pub(crate) fn model_to_lon_lat(&self, model: [f64; 2]) -> Result<[f64; 2], TerrainError> {
         let own = self.own.as_ref().ok_or(TerrainError::NoReferenceSystem)?;
-        convert(own, &self.wgs_84, self.to_own(model)).map_err(|what| TerrainError::Place { place: model, what })
+        convert(own, &self.wgs_84, self.to_own(model)).map_err(|what| TerrainError::Position { position: model, what })
     }
 
-    /// Metres on the ground in one metre of model coordinates northwards at a place, where the Earth is known.
+    /// Metres on the ground in one metre of model coordinates northwards at a position, where the Earth is known.
     pub(crate) fn scale(&self, [x, y]: [f64; 2]) -> Option<f64> {
         const STEP: f64 = 100.0;
         let here = self.model_to_lon_lat([x, y]).ok()?;
@@ -100,8 +101,8 @@ impl Frame {
     }
 
     /// From own coordinates to those of another system.
-    pub(crate) fn own_to(&self, other: &Proj, place: [f64; 2]) -> Option<[f64; 2]> {
-        convert(self.own.as_ref()?, other, place).ok()
+    pub(crate) fn own_to(&self, other: &Proj, position: [f64; 2]) -> Option<[f64; 2]> {
+        convert(self.own.as_ref()?, other, position).ok()
     }
 
     /// True where own coordinates can be converted to other systems.
@@ -115,13 +116,13 @@ fn wgs_84() -> Proj {
 }
 
 /// From one system to another; geographic coordinates are degrees (the library's are radians).
-pub(crate) fn convert(from: &Proj, to: &Proj, place: [f64; 2]) -> Result<[f64; 2], String> {
-    let [x, y] = if from.is_latlong() { place.map(f64::to_radians) } else { place };
+pub(crate) fn convert(from: &Proj, to: &Proj, position: [f64; 2]) -> Result<[f64; 2], String> {
+    let [x, y] = if from.is_latlong() { position.map(f64::to_radians) } else { position };
     let mut point = (x, y, 0.0);
     transform(from, to, &mut point).map_err(|error| error.to_string())?;
-    let place = [point.0, point.1];
-    if !place.iter().all(|value| value.is_finite()) {
+    let position = [point.0, point.1];
+    if !position.iter().all(|value| value.is_finite()) {
         return Err("it lies beyond what the projection can show".into());
     }
-    Ok(if to.is_latlong() { place.map(f64::to_degrees) } else { place })
+    Ok(if to.is_latlong() { position.map(f64::to_degrees) } else { position })
 }

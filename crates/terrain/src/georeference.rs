@@ -17,7 +17,7 @@ pub struct Georeference {
 }
 
 impl Georeference {
-    /// Metres, or whatever the numbers mean, without a place on Earth.
+    /// Metres, or whatever the numbers mean, without a position on Earth.
     pub(crate) fn plain(corner: [f64; 2], cell: [f64; 2]) -> Self {
         Self { corner, cell, system: None, keys: GeoKeyDirectory::new() }
     }
@@ -27,7 +27,7 @@ impl Georeference {
         Self::plain(corner, cell).with_system(ReferenceSystem::from_epsg(4326, true, 1.0))
     }
 
-    /// The same place in the given reference system.
+    /// The same grid in the given reference system.
     pub(crate) fn with_system(mut self, system: ReferenceSystem) -> Self {
         system.write_keys(&mut self.keys);
         self.system = Some(system);
@@ -36,15 +36,15 @@ impl Georeference {
 
     /// Centre of a cell.
     pub fn centre(&self, column: usize, row: usize) -> [f64; 2] {
-        self.place([column as f64, row as f64])
+        self.point([column as f64, row as f64])
     }
 
-    /// The place at a fractional (column, row), whole numbers at the centres of cells.
-    pub(crate) fn place(&self, [column, row]: [f64; 2]) -> [f64; 2] {
+    /// The point at a fractional (column, row), whole numbers at the centres of cells.
+    pub(crate) fn point(&self, [column, row]: [f64; 2]) -> [f64; 2] {
         [self.corner[0] + (column + 0.5) * self.cell[0], self.corner[1] - (row + 0.5) * self.cell[1]]
     }
 
-    /// Fractional (column, row) of a place; whole numbers at the centres of cells.
+    /// Fractional (column, row) of a position; whole numbers at the centres of cells.
     pub fn position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [(x - self.corner[0]) / self.cell[0] - 0.5, (self.corner[1] - y) / self.cell[1] - 0.5]
     }

@@ -28,10 +28,10 @@ impl MapGrid {
 
     /// Centre of a cell in model coordinates, m.
     pub fn centre(&self, column: usize, row: usize) -> [f64; 2] {
-        self.place([column as f64, row as f64])
+        self.point([column as f64, row as f64])
     }
 
-    /// Fractional (column, row) of a place in model coordinates; whole numbers at the centres of cells. Outside the
+    /// Fractional (column, row) of a position in model coordinates; whole numbers at the centres of cells. Outside the
     /// grid it goes on beyond `-0.5` or `columns - 0.5`.
     pub fn position(&self, x: f64, y: f64) -> [f64; 2] {
         self.georeference.position(self.frame.to_own([x, y]))
@@ -48,16 +48,16 @@ impl MapGrid {
         east * north
     }
 
-    /// The place in model coordinates of a fractional (column, row).
-    pub fn place(&self, position: [f64; 2]) -> [f64; 2] {
-        self.frame.to_model(self.georeference.place(position))
+    /// The point in model coordinates of a fractional (column, row).
+    pub fn point(&self, position: [f64; 2]) -> [f64; 2] {
+        self.frame.to_model(self.georeference.point(position))
     }
 
     /// Distances between the middles of opposite sides of the cell round a fractional (column, row).
     fn cell_size_at(&self, [column, row]: [f64; 2]) -> [f64; 2] {
         let distance = |from: [f64; 2], to: [f64; 2]| {
-            let [x0, y0] = self.place(from);
-            let [x1, y1] = self.place(to);
+            let [x0, y0] = self.point(from);
+            let [x1, y1] = self.point(to);
             (x1 - x0).hypot(y1 - y0)
         };
         [distance([column - 0.5, row], [column + 0.5, row]), distance([column, row - 0.5], [column, row + 0.5])]

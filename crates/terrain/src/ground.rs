@@ -27,41 +27,51 @@ const FAR_FROM_CENTRE: f64 = 285e3;
 /// Error of a projection's scale above which there is a warning (UTM and national grids keep within 0.002).
 const MAX_SCALE_ERROR: f64 = 0.005;
 
-/// The ground from a raster; `path` is for messages.
-pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> Result<Terrain, TerrainError> {
-    let mut warnings = std::mem::take(&mut raster.warnings);
-    mark_no_data(&mut raster, path, &mut warnings);
-    check_heights(&raster, path, &mut warnings)?;
-    let size = [raster.columns, raster.rows];
-    let has_holes = raster.values.iter().any(|height| height.is_nan());
-    // Ground that is filled in is ground.
-    let is_solid = has_holes && no_data == NoData::Wall;
-    let valid = is_solid.then(|| raster.values.iter().map(|height| !height.is_nan()).collect());
-    holes::close(&mut raster.values, size, no_data);
-    let frame = Frame::of_grid(&raster.georeference, size).map_err(|what| TerrainError::unusable(path, what))?;
-    let map_grid =
-        MapGrid { columns: size[0], rows: size[1], georeference: raster.georeference.clone(), frame: Arc::new(frame) };
-    let geographic = raster.georeference.system.as_ref().is_some_and(|system| system.geographic);
-    let (bounds, surface) = if geographic {
-        let bounds = inside(&map_grid).map_err(|what| TerrainError::unusable(path, what))?;
-        if bounds.x_min < -FAR_FROM_CENTRE || bounds.x_max > FAR_FROM_CENTRE {
-            let what = "The terrain is so wide that distances near its sides are wrong by more than 0.1 %; cut it out \
-                        smaller if that matters.";
-            warnings.push(what.into());
-        }
-        (bounds, resampled(raster, bounds, &map_grid))
-    } else {
-        let bounds = outside(&map_grid);
-        if let Some(scale) = map_grid.frame.scale(bounds.centre()).filter(|scale| (scale - 1.0).abs() > MAX_SCALE_ERROR)
-        {
-            warnings.push(format!(
-                "A metre of the terrain's projection is {scale:.3} m on the ground, and so are areas and volumes out of \
-                 proportion; project it to one that is true to scale here, e.g. UTM, with `gdalwarp -t_srs`."
-            ));
-        }
-        (bounds, metric(raster, &map_grid))
-    };
-    Ok(Terrain { bounds, ground: Ground::Surface(surface), map_grid, valid, warnings })
+impl Terrain {
+    /// Smooth ground through the heights of a raster; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// A text that names it, where its heights are no ground or it spans too much of the Earth.
+    pub fn from_raster(mut raster: Raster, name: &Path, no_data: NoData) -> Result<Self, TerrainError> {
+        let mut warnings = std::mem::take(&mut raster.warnings);
+        mark_no_data(&mut raster, name, &mut warnings);
+        check_heights(&raster, name, &mut warnings)?;
+        let size = [raster.columns, raster.rows];
+        let has_holes = raster.values.iter().any(|height| height.is_nan());
+        // Ground that is filled in is ground.
+        let is_solid = has_holes && no_data == NoData::Wall;
+        let valid = is_solid.then(|| raster.values.iter().map(|height| !height.is_nan()).collect());
+        holes::close(&mut raster.values, size, no_data);
+        let frame = Frame::of_grid(&raster.georeference, size).map_err(|what| TerrainError::unusable(name, what))?;
+        let map_grid = MapGrid {
+            columns: size[0],
+            rows: size[1],
+            georeference: raster.georeference.clone(),
+            frame: Arc::new(frame),
+        };
+        let geographic = raster.georeference.system.as_ref().is_some_and(|system| system.geographic);
+        let (bounds, surface) = if geographic {
+            let bounds = inside(&map_grid).map_err(|what| TerrainError::unusable(name, what))?;
+            if bounds.x_min < -FAR_FROM_CENTRE || bounds.x_max > FAR_FROM_CENTRE {
+                let what = "The terrain is so wide that distances near its sides are wrong by more than 0.1 %; cut it out \
+                            smaller if that matters.";
+                warnings.push(what.into());
+            }
+            (bounds, resampled(raster, bounds, &map_grid))
+        } else {
+            let bounds = outside(&map_grid);
+            if let Some(scale) =
+                map_grid.frame.scale(bounds.centre()).filter(|scale| (scale - 1.0).abs() > MAX_SCALE_ERROR)
+            {
+                warnings.push(format!(
+                    "A metre of the terrain's projection is {scale:.3} m on the ground, and so are areas and volumes out of \
+                     proportion; project it to one that is true to scale here, e.g. UTM, with `gdalwarp -t_srs`."
+                ));
+            }
+            (bounds, metric(raster, &map_grid))
+        };
+        Ok(Self { bounds, ground: Ground::Surface(surface), map_grid, valid, warnings })
+    }
 }
 
 /// Takes heights of exactly the usual mark for cells without data, and tells it.
@@ -112,8 +122,8 @@ fn metric(raster: Raster, grid: &MapGrid) -> Surface {
 
 /// The rectangle round the cells of a raster that is not turned against the model's axes.
 fn outside(grid: &MapGrid) -> Bounds {
-    let [x_min, y_max] = grid.place([-0.5, -0.5]);
-    let [x_max, y_min] = grid.place([grid.columns as f64 - 0.5, grid.rows as f64 - 0.5]);
+    let [x_min, y_max] = grid.point([-0.5, -0.5]);
+    let [x_max, y_min] = grid.point([grid.columns as f64 - 0.5, grid.rows as f64 - 0.5]);
     Bounds { x_min, x_max, y_min, y_max }
 }
 
@@ -124,7 +134,7 @@ fn inside(grid: &MapGrid) -> Result<Bounds, String> {
     let along = |from: [f64; 2], to: [f64; 2]| {
         (0..=STEPS).map(move |step| {
             let t = step as f64 / STEPS as f64;
-            grid.place([from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])])
+            grid.point([from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])])
         })
     };
     let corners = [[-0.5, -0.5], [last_column, -0.5], [-0.5, last_row], [last_column, last_row]];
@@ -136,7 +146,7 @@ fn inside(grid: &MapGrid) -> Result<Bounds, String> {
         y_max: along(north_west, north_east).map(|[_, y]| y).fold(f64::INFINITY, f64::min),
     };
     let [width, height] = bounds.size();
-    let finite = corners.iter().flat_map(|corner| grid.place(*corner)).all(f64::is_finite);
+    let finite = corners.iter().flat_map(|corner| grid.point(*corner)).all(f64::is_finite);
     if finite && width > 0.0 && height > 0.0 {
         Ok(bounds)
     } else {
@@ -164,8 +174,8 @@ fn resampled(raster: Raster, bounds: Bounds, grid: &MapGrid) -> Surface {
         .with_min_len(1024)
         .map(|index| {
             let (column, row) = (index % count[0], index / count[0]);
-            let place = [first[0] + column as f64 * cell[0], first[1] + row as f64 * cell[1]];
-            let [longitude, latitude] = grid.frame.to_own(place);
+            let position = [first[0] + column as f64 * cell[0], first[1] + row as f64 * cell[1]];
+            let [longitude, latitude] = grid.frame.to_own(position);
             own.height_and_slope(longitude, latitude).0
         })
         .collect();

@@ -17,6 +17,8 @@ mod ground;
 mod holes;
 mod mean;
 mod mosaic;
+mod open;
+mod outline;
 mod polygons;
 mod raster;
 mod summary;

@@ -3,7 +3,7 @@
 use crate::Terrain;
 use geojson::{GeoJson, GeometryValue};
 
-/// Rings of places; those that an odd number of them hold are inside.
+/// Rings of positions; those that an odd number of them hold are inside.
 pub type Polygon = Vec<Vec<[f64; 2]>>;
 
 /// The polygons of a GeoJSON text, as written there; other geometries are ignored.
@@ -28,8 +28,8 @@ pub fn polygons_of_geojson(text: &str) -> Result<Vec<Polygon>, String> {
 
 fn collect(geometry: &GeometryValue, polygons: &mut Vec<Polygon>) {
     let polygon = |rings: &geojson::PolygonType| -> Polygon {
-        let place = |position: &geojson::Position| Some([*position.as_slice().first()?, *position.as_slice().get(1)?]);
-        rings.iter().map(|ring| ring.iter().filter_map(place).collect()).collect()
+        let point = |position: &geojson::Position| Some([*position.as_slice().first()?, *position.as_slice().get(1)?]);
+        rings.iter().map(|ring| ring.iter().filter_map(point).collect()).collect()
     };
     match geometry {
         GeometryValue::Polygon { coordinates } => polygons.push(polygon(coordinates)),
@@ -47,8 +47,8 @@ impl Terrain {
     pub fn polygons_to_own(&self, mut polygons: Vec<Polygon>) -> Vec<Polygon> {
         let could_be_degrees = |[x, y]: &[f64; 2]| (-180.0..=180.0).contains(x) && (-90.0..=90.0).contains(y);
         if polygons.iter().flatten().flatten().all(could_be_degrees) {
-            for place in polygons.iter_mut().flatten().flatten() {
-                *place = self.from_lon_lat(*place).map_or(*place, |model| self.to_own(model));
+            for position in polygons.iter_mut().flatten().flatten() {
+                *position = self.from_lon_lat(*position).map_or(*position, |model| self.to_own(model));
             }
         }
         polygons

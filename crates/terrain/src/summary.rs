@@ -18,7 +18,7 @@ pub struct Summary {
     pub survey: Survey,
     /// Size of a cell in its middle `[east, north]`, m.
     pub cell_m: [f64; 2],
-    /// The rectangle round it in longitude and latitude on WGS 84, where its place on Earth is known.
+    /// The rectangle round it in longitude and latitude on WGS 84, where its position on Earth is known.
     pub lon_lat: Option<MapBox>,
     /// The lowest and the highest value, m; none where there is no data at all.
     pub heights_m: Option<[f64; 2]>,
@@ -71,10 +71,10 @@ fn parts(survey: &Survey) -> Vec<Option<MapBox>> {
     starts.iter().copied().zip(ends).map(part).collect()
 }
 
-/// The file's grid with its place on Earth.
+/// The file's grid with its position on Earth.
 fn grid(survey: &Survey) -> Result<MapGrid, String> {
     let Survey { columns, rows, georeference, .. } = survey.clone();
-    let middle = georeference.place([0.5 * columns as f64 - 0.5, 0.5 * rows as f64 - 0.5]);
+    let middle = georeference.point([0.5 * columns as f64 - 0.5, 0.5 * rows as f64 - 0.5]);
     let frame = match &georeference.system {
         Some(system) => Frame::of(system, middle)?,
         None => Frame::plain(),

@@ -2,12 +2,10 @@
 
 use crate::frame::Frame;
 use crate::surface::{GroundPatches, Surface};
-use crate::{Bounds, MapGrid, Raster, TerrainError, generated, ground, read_rasters};
-use corpuscle_scene::{NoData, Terrain as Scene};
+use crate::{Bounds, MapGrid, TerrainError};
 use corpuscle_simd::{LANES, Lanes, Level, Simd, SimdBase, dispatch};
 use rayon::prelude::*;
 use std::fmt;
-use std::path::Path;
 use std::sync::Arc;
 
 /// The ground: heights and slopes in model coordinates, and the grid on which maps are given back.
@@ -79,40 +77,6 @@ impl Terrain {
         }
     }
 
-    /// The ground of a scene. `seed` makes generated ground, `folder` is what a relative path refers to.
-    ///
-    /// # Errors
-    /// A text that says what is wrong with the file or with the numbers of a generated terrain;
-    /// [`TerrainError::NotFetched`] for one that comes over a network, which this crate does not access.
-    pub fn open(scene: &Scene, seed: u64, folder: &Path) -> Result<Self, TerrainError> {
-        match scene {
-            Scene::File(scene) => {
-                let path = folder.join(&scene.path);
-                let raster = read_rasters(std::slice::from_ref(&path), scene.crs.as_deref(), None)?;
-                Self::from_raster(raster, &path, scene.no_data)
-            }
-            Scene::Tiles(scene) => {
-                let paths: Vec<_> = scene.paths.iter().map(|path| folder.join(path)).collect();
-                let raster = read_rasters(&paths, scene.crs.as_deref(), None)?;
-                Self::from_raster(raster, &paths[0], scene.no_data)
-            }
-            Scene::Fetch(_) => Err(TerrainError::NotFetched),
-            Scene::Valley(scene) => generated::valley(scene, seed),
-            Scene::RoughHills(scene) => generated::rough_hills(scene, seed),
-            Scene::Plane(scene) => generated::plane(scene),
-            Scene::Bump(scene) => generated::bump(scene),
-            Scene::Bowl(scene) => generated::bowl(scene),
-        }
-    }
-
-    /// Smooth ground through the heights of a raster; `name` is what messages call it.
-    ///
-    /// # Errors
-    /// A text that names it, where its heights are no ground or it spans too much of the Earth.
-    pub fn from_raster(raster: Raster, name: &Path, no_data: NoData) -> Result<Self, TerrainError> {
-        ground::from_raster(raster, name, no_data)
-    }
-
     /// Smooth ground through heights on a grid: `height` gives them, m, at the centres of cells about `cell` wide
     /// that fill `bounds`.
     pub fn gridded(bounds: Bounds, cell: f64, height: impl Fn(f64, f64) -> f64 + Sync) -> Self {
@@ -135,12 +99,12 @@ impl Terrain {
         self.bounds
     }
 
-    /// Height of the ground, m. Outside the bounds that of the nearest place inside.
+    /// Height of the ground, m. Outside the bounds that of the nearest position inside.
     pub fn height(&self, x: f64, y: f64) -> f64 {
         self.height_and_slope(x, y).0
     }
 
-    /// [`Self::height`], for places far from each other: nothing is kept for looking at places beside them, as the
+    /// [`Self::height`], for positions far from each other: nothing is kept for looking at positions beside them, as the
     /// others do. Slower where the ground has not been looked at, and takes no memory.
     pub fn height_once(&self, x: f64, y: f64) -> f64 {
         let [x, y] = self.bounds.nearest(x, y);
@@ -165,7 +129,7 @@ impl Terrain {
         }
     }
 
-    /// Height of the ground, m, and its slope `[dz/dx, dz/dy]`. Outside the bounds those of the nearest place inside.
+    /// Height of the ground, m, and its slope `[dz/dx, dz/dy]`. Outside the bounds those of the nearest position inside.
     #[inline]
     pub fn height_and_slope(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
         let [x, y] = self.bounds.nearest(x, y);
@@ -175,7 +139,7 @@ impl Terrain {
         }
     }
 
-    /// [`Self::height_and_slope`] at many places at once, to the same bits and far quicker: heights, m, dz/dx and dz/dy.
+    /// [`Self::height_and_slope`] at many positions at once, to the same bits and far quicker: heights, m, dz/dx and dz/dy.
     /// `N` is a multiple of [`corpuscle_simd::LANES`].
     pub fn heights_and_slopes<const N: usize>(&self, x: &[f64; N], y: &[f64; N]) -> [[f64; N]; 3] {
         const { assert!(N.is_multiple_of(LANES)) };
@@ -224,9 +188,9 @@ impl Terrain {
     }
 
     /// From the terrain's own coordinates (longitude and latitude in degrees for a geographic one) to model metres.
-    /// Not-a-number for a place that a geographic terrain's local projection cannot show, half the Earth away.
-    pub fn to_model(&self, place: [f64; 2]) -> [f64; 2] {
-        self.map_grid.frame.to_model(place)
+    /// Not-a-number for a position that a geographic terrain's local projection cannot show, half the Earth away.
+    pub fn to_model(&self, position: [f64; 2]) -> [f64; 2] {
+        self.map_grid.frame.to_model(position)
     }
 
     /// From model metres to the terrain's own coordinates.
@@ -237,7 +201,7 @@ impl Terrain {
     /// From longitude and latitude, degrees (WGS 84), to model metres.
     ///
     /// # Errors
-    /// [`TerrainError::NoReferenceSystem`] where the terrain has no known place on Earth, [`TerrainError::Place`]
+    /// [`TerrainError::NoReferenceSystem`] where the terrain has no known position on Earth, [`TerrainError::Position`]
     /// where its reference system does not reach.
     pub fn from_lon_lat(&self, lon_lat: [f64; 2]) -> Result<[f64; 2], TerrainError> {
         self.map_grid.frame.lon_lat_to_model(lon_lat)

@@ -182,8 +182,8 @@ proptest! {
         let mut bytes = [&*PLAIN, &*DEFLATED, &*LZW][which].clone();
         for (index, byte) in changes {
             // The header and the directory are where a change does most.
-            let place = index.index(bytes.len());
-            bytes[place] = byte;
+            let offset = index.index(bytes.len());
+            bytes[offset] = byte;
         }
         let _ = read("changed.tif", &bytes);
     }
@@ -196,9 +196,9 @@ proptest! {
     ) {
         let mut bytes = [&*PLAIN, &*DEFLATED, &*LZW][which].clone();
         let start = u32::from_le_bytes(bytes[4..8].try_into().unwrap()) as usize;
-        for (place, byte) in changes {
-            let place = (start + place) % bytes.len();
-            bytes[place] = byte;
+        for (offset, byte) in changes {
+            let offset = (start + offset) % bytes.len();
+            bytes[offset] = byte;
         }
         let _ = read("changed.tif", &bytes);
     }

@@ -81,7 +81,7 @@ fn over_triangle(terrain: &Terrain, [a, b, c]: [[f64; 2]; 3]) -> f64 {
     let weight = |sign: f64| (322.0 + sign * 13.0 * 70.0_f64.sqrt()) / 900.0;
     let (near, far) = ((root(-1.0), weight(1.0)), (root(1.0), weight(-1.0)));
     let points = [(-far.0, far.1), (-near.0, near.1), (0.0, 128.0 / 225.0), near, far];
-    let points = points.map(|(place, weight)| (0.5 + 0.5 * place, 0.5 * weight));
+    let points = points.map(|(position, weight)| (0.5 + 0.5 * position, 0.5 * weight));
     let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let mut sum = 0.0;
     for ((s, ws), (t, wt)) in points.into_iter().flat_map(|p| points.map(|q| (p, q))) {
@@ -234,7 +234,7 @@ proptest! {
 }
 
 fn any_coordinate() -> impl Strategy<Value = f64> {
-    // Also places on the lines between patches and on the sides of the bounds.
+    // Also positions on the lines between patches and on the sides of the bounds.
     prop_oneof![any::<f64>(), -30.0..110.0_f64, (-10..40_i32).prop_map(|cell| f64::from(cell) * 2.0 + 30.0)]
 }
 
@@ -314,7 +314,7 @@ fn data_is_where_the_file_has_some() {
     let text = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 50\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 -9999 6\n";
     std::fs::write(&path, text).unwrap();
     let terrain = Terrain::from_raster(read_raster(&path).unwrap(), Path::new("hole"), NoData::default()).unwrap();
-    for (place, has_data) in [
+    for (position, has_data) in [
         ([105.0, 55.0], true),
         ([115.0, 55.0], false),
         ([119.9, 59.9], false),
@@ -329,6 +329,6 @@ fn data_is_where_the_file_has_some() {
         ([f64::NAN, 65.0], false),
         ([105.0, f64::INFINITY], false),
     ] {
-        assert_eq!(terrain.has_data_at(place[0], place[1]), has_data, "{place:?}");
+        assert_eq!(terrain.has_data_at(position[0], position[1]), has_data, "{position:?}");
     }
 }

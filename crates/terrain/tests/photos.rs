@@ -106,9 +106,9 @@ fn pixels_lie_where_the_reference_systems_say() {
     let home = terrain([400_000.0, 300_000.0], [10.0, 10.0], Some("EPSG:27700"));
     let corner = home.to_lon_lat([400_000.0, 300_000.0]).unwrap();
     let degrees = terrain(corner, [1e-4, 1e-4], Some("EPSG:4326"));
-    for place in [[400_055.0, 299_935.0], [400_200.0, 299_900.0]] {
-        let lon_lat = home.to_lon_lat(place).unwrap();
+    for position in [[400_055.0, 299_935.0], [400_200.0, 299_900.0]] {
+        let lon_lat = home.to_lon_lat(position).unwrap();
         let here = degrees.from_lon_lat(lon_lat).unwrap();
-        near(photo.pixel(&degrees, here), photo.pixel(&home, place).unwrap());
+        near(photo.pixel(&degrees, here), photo.pixel(&home, position).unwrap());
     }
 }

@@ -109,9 +109,9 @@ fn every_compression_and_layout_is_read() {
 
 const PACK_BITS: u32 = 32773;
 
-/// A big-endian TIFF of 16-bit samples in one strip, packed by PackBits as runs of literal bytes; with its place, the
+/// A big-endian TIFF of 16-bit samples in one strip, packed by PackBits as runs of literal bytes; with its position, the
 /// same as that of `builder`, or without. Another code of compression makes it a lie.
-fn packed_bits(with_place: bool, compression: u32) -> Vec<u8> {
+fn packed_bits(with_position: bool, compression: u32) -> Vec<u8> {
     let samples: Vec<u8> =
         (0..ROWS * COLUMNS).flat_map(|i| (value(i % COLUMNS, i / COLUMNS) as u16).to_be_bytes()).collect();
     // Each row is packed on its own: a count of bytes less one, then the bytes.
@@ -120,9 +120,9 @@ fn packed_bits(with_place: bool, compression: u32) -> Vec<u8> {
         .flat_map(|row| std::iter::once((row.len() - 1) as u8).chain(row.iter().copied()))
         .collect();
     // Pixel scale and tie point.
-    let place: [f64; 9] = [10.0, 20.0, 0.0, 0.0, 0.0, 0.0, 1000.0, 5000.0, 0.0];
-    let place_at = 8 + strip.len() as u32;
-    let directory_at = place_at + 72;
+    let position: [f64; 9] = [10.0, 20.0, 0.0, 0.0, 0.0, 0.0, 1000.0, 5000.0, 0.0];
+    let position_at = 8 + strip.len() as u32;
+    let directory_at = position_at + 72;
     let (short, long, double) = (3_u16, 4_u16, 12_u16);
     let mut entries = vec![
         (256, short, 1, COLUMNS as u32),
@@ -135,13 +135,13 @@ fn packed_bits(with_place: bool, compression: u32) -> Vec<u8> {
         (278, short, 1, ROWS as u32),
         (279, long, 1, strip.len() as u32),
     ];
-    if with_place {
-        entries.extend([(33550, double, 3, place_at), (33922, double, 6, place_at + 24)]);
+    if with_position {
+        entries.extend([(33550, double, 3, position_at), (33922, double, 6, position_at + 24)]);
     }
     let mut bytes = b"MM\0*".to_vec();
     bytes.extend(directory_at.to_be_bytes());
     bytes.extend(&strip);
-    bytes.extend(place.iter().flat_map(|value| value.to_be_bytes()));
+    bytes.extend(position.iter().flat_map(|value| value.to_be_bytes()));
     bytes.extend((entries.len() as u16).to_be_bytes());
     for (tag, kind, count, number) in entries {
         bytes.extend([tag, kind].iter().flat_map(|value: &u16| value.to_be_bytes()));
@@ -175,21 +175,21 @@ fn compressions_that_are_not_read_are_refused_by_name() {
 }
 
 #[test]
-fn a_picture_without_a_place_is_refused() {
+fn a_picture_without_a_position_is_refused() {
     let (_folder, path) = temporary("dem.tif");
     std::fs::write(&path, packed_bits(false, PACK_BITS)).unwrap();
     assert!(read_raster(&path).unwrap_err().to_string().contains("says nowhere where it lies"));
 }
 
 #[test]
-fn place_and_system_are_read_for_areas_and_points() {
+fn position_and_system_are_read_for_areas_and_points() {
     let (_folder, path) = temporary("dem.tif");
     for raster_type in [RasterType::PixelIsArea, RasterType::PixelIsPoint] {
         write(&path, &builder().raster_type(raster_type), |v| v as f32);
-        let place = read_raster(&path).unwrap().georeference;
-        assert_eq!((place.corner, place.cell), ([1000.0, 5000.0], [10.0, 20.0]), "{raster_type:?}");
-        assert_eq!(place.centre(0, 0), [1005.0, 4990.0]);
-        let system = place.system.unwrap();
+        let georeference = read_raster(&path).unwrap().georeference;
+        assert_eq!((georeference.corner, georeference.cell), ([1000.0, 5000.0], [10.0, 20.0]), "{raster_type:?}");
+        assert_eq!(georeference.centre(0, 0), [1005.0, 4990.0]);
+        let system = georeference.system.unwrap();
         assert_eq!((system.name.as_str(), system.geographic, system.metres_per_unit), ("EPSG:27700", false, 1.0));
     }
 }
@@ -271,7 +271,7 @@ fn ascii_variants_are_read() {
 }
 
 #[test]
-fn a_map_comes_back_with_the_place_and_the_system_of_the_terrain() {
+fn a_map_comes_back_with_the_position_and_the_system_of_the_terrain() {
     let (folder, path) = temporary("dem.tif");
     let out = folder.path().join("depth.tif");
     write(&path, &builder().vertical_citation("some datum").nodata("30"), |v| v as i16);
@@ -340,8 +340,8 @@ fn a_large_map_has_overviews_of_its_own_cells_before_its_data() {
     for (index, step) in [2, 4].into_iter().enumerate() {
         let overview = file.read_overview::<f32>(index).unwrap();
         assert_eq!(overview.shape(), [rows.div_ceil(step), columns.div_ceil(step)]);
-        for (place, value) in overview.iter().enumerate() {
-            let [row, column] = [place / columns.div_ceil(step), place % columns.div_ceil(step)];
+        for (pixel, value) in overview.iter().enumerate() {
+            let [row, column] = [pixel / columns.div_ceil(step), pixel % columns.div_ceil(step)];
             let cell = values[row * step * columns + column * step];
             assert_eq!(*value, if cell.is_nan() { -9999.0 } else { cell }, "step {step}, row {row}, column {column}");
         }

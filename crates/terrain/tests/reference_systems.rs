@@ -115,9 +115,9 @@ fn a_terrain_in_feet_becomes_metres() {
     let foot = 1200.0 / 3937.0;
     assert!((terrain.bounds().size()[0] - 60.0 * 30.0 * foot).abs() < 1e-6);
     assert_near(terrain.to_model(corner), corner.map(|value| value * foot), 1e-6);
-    let place = terrain.from_lon_lat([-122.5, 40.5]).unwrap();
-    assert_near(terrain.to_own(place), [6_422_625.255_795_221, 2_065_824.321_027_114_3], 1e-2);
-    let (height, [east, _]) = terrain.height_and_slope(place[0], place[1]);
+    let position = terrain.from_lon_lat([-122.5, 40.5]).unwrap();
+    assert_near(terrain.to_own(position), [6_422_625.255_795_221, 2_065_824.321_027_114_3], 1e-2);
+    let (height, [east, _]) = terrain.height_and_slope(position[0], position[1]);
     assert!((height - 625.255).abs() < 1e-2 && (east - 1.0 / foot).abs() < 1e-6);
 }
 
@@ -178,7 +178,7 @@ fn another_raster_is_looked_up_wherever_it_lies() {
     assert_eq!(field.bilinear(535_269.0, 5_594_700.0), Some(535_265.0), "beside no data");
     assert_eq!(field.nearest(535_200.0, 5_594_800.0), Some(535_205.0), "on the corner");
     assert_eq!(field.nearest(535_800.0, 5_594_300.0), Some(535_795.0), "on the other corner");
-    // The same place in degrees.
+    // The same position in degrees.
     let degrees = folder.path().join("degrees.tif");
     write(&degrees, builder().geographic_epsg(4326), [9.49, 50.51], 0.0005, |lon, _| lon);
     let field = RasterField::open(&degrees, &terrain).unwrap();

@@ -1,6 +1,6 @@
 //! Several files as one terrain, and parts of files.
 
-use corpuscle_scene::{NoData, Terrain as Scene, TerrainFile, TerrainTiles};
+use corpuscle_scene::{NoData, TerrainFile, TerrainTiles};
 use corpuscle_terrain::{
     MapBox, Raster, Terrain, TerrainError, read_raster, read_raster_part, read_rasters, survey, write_raster,
     write_raster_exactly,
@@ -63,12 +63,12 @@ impl Folder {
 
     fn tiles(&self, names: &[&str], no_data: NoData) -> Result<Terrain, TerrainError> {
         let paths = names.iter().map(PathBuf::from).collect();
-        Terrain::open(&Scene::Tiles(TerrainTiles { paths, crs: None, no_data }), 1, self.0.path())
+        Terrain::open(&corpuscle_scene::Terrain::Tiles(TerrainTiles { paths, crs: None, no_data }), 1, self.0.path())
     }
 
     fn file(&self, name: &str) -> Terrain {
         let file = TerrainFile { path: name.into(), crs: None, no_data: NoData::Wall };
-        Terrain::open(&Scene::File(file), 1, self.0.path()).unwrap()
+        Terrain::open(&corpuscle_scene::Terrain::File(file), 1, self.0.path()).unwrap()
     }
 }
 

@@ -16,8 +16,7 @@ use corpuscle_render::{
     HeightField, Key, KeyPosition, Lens, Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, ValueOfDevice,
     Water, WaterSides, natural_colours,
 };
-use corpuscle_scene::Flood as Settings;
-use corpuscle_terrain::Terrain as Ground;
+use corpuscle_scene::Flood;
 use std::path::Path;
 
 /// Default azimuth and elevation of the camera (from the south-east, from above), and field of view, radians.
@@ -139,8 +138,8 @@ impl Subject for FloodPicture {
 impl FloodPicture {
     pub(crate) fn new(
         context: &DrawContext,
-        settings: &Settings,
-        ground: &Ground,
+        settings: &Flood,
+        ground: &corpuscle_terrain::Terrain,
         drawn: HeightField,
         picture: &PictureSettings,
     ) -> Result<Self, Error> {
@@ -270,7 +269,7 @@ impl FloodPicture {
 }
 
 /// Heights of the ground as drawn: at the nodes of its own grid, at most so many a side.
-pub(super) fn drawn_ground(ground: &Ground) -> HeightField {
+pub(super) fn drawn_ground(ground: &corpuscle_terrain::Terrain) -> HeightField {
     let grid = ground.map_grid();
     sampled(ground, [grid.columns, grid.rows].map(|cells| (cells + 1).min(MOST_NODES)))
 }
@@ -284,7 +283,7 @@ fn raised_ground(mut ground: HeightField, times: f64) -> HeightField {
 }
 
 /// Heights of the ground at so many nodes `[eastwards, northwards]`.
-pub(super) fn sampled(ground: &Ground, nodes: [usize; 2]) -> HeightField {
+pub(super) fn sampled(ground: &corpuscle_terrain::Terrain, nodes: [usize; 2]) -> HeightField {
     let bounds = ground.bounds();
     let nodes = nodes.map(|count| count.max(2));
     let [width, height] = bounds.size();
@@ -340,7 +339,7 @@ fn raised(set: &ParticleSet, times: f64) -> ParticleSet {
 }
 
 /// False for positions in or beside a cell of the terrain's own grid without data.
-fn has_data(ground: &Ground, [x, y]: [f64; 2]) -> bool {
+fn has_data(ground: &corpuscle_terrain::Terrain, [x, y]: [f64; 2]) -> bool {
     let grid = ground.map_grid();
     let [column, row] = grid.position(x, y);
     // A position on a line between cells belongs to both.

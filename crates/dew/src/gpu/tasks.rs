@@ -10,13 +10,14 @@ use corpuscle_gpu::{
     Buffers, COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, SortSlots, THREADS,
     Task, storage, uniform, wgpu,
 };
-use corpuscle_sph::kernel::KERNEL_PIECE;
+use corpuscle_sph::kernel::{CUBIC_SPLINE_SHAPE, KERNEL_PIECE};
 
 /// Pieces that the shaders import, but for what they share with the host, and the smoothing kernel.
 pub(super) const PIECES: &[(&str, &str)] = &[
     SUMS_BEFORE,
     COMPENSATED_SUMS,
     GROUP_REDUCTION,
+    CUBIC_SPLINE_SHAPE,
     ("dew_particles", include_str!("../air/dew_particles.wgsl")),
     ("dew_columns", include_str!("../faces/dew_columns.wgsl")),
     ("dew_neighbours", include_str!("../air/dew_neighbours.wgsl")),

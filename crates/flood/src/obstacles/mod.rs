@@ -1,12 +1,14 @@
 //! Rigid obstacles of a scene: buildings and walls that water flows around.
 
 mod clip;
+mod lines;
 mod open;
 mod outline;
 mod shapefile;
 mod shapes;
 
 pub(crate) use clip::{side_within, surroundings};
+pub(crate) use lines::{Line, lines};
 pub(crate) use open::{check_overlap, open, polygons};
 #[cfg(feature = "gpu")]
 pub(crate) use outline::OutlineCells;

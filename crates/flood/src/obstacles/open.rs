@@ -2,9 +2,9 @@
 
 use super::clip::{ring_within, surroundings};
 use super::{Outline, Outlines, shapefile};
-use crate::limits::check_inside;
+use crate::extent::{check_inside, is_beside};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Circle, Flood as Settings, Obstacle, read_bytes, read_text};
+use corpuscle_scene::{Circle, Flood, Obstacle, read_bytes, read_text};
 use corpuscle_terrain::{Bounds, Polygon, Terrain, polygons_of_geojson};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -16,7 +16,7 @@ const ROUND: usize = 360;
 ///
 /// # Errors
 /// [`ModelError::Setup`] for a file that holds no polygon, or one that lies outside the terrain or where its projection does not reach.
-pub(crate) fn open(flood: &Settings, terrain: &Terrain, folder: &Path, reach: f64) -> Result<Outlines, ModelError> {
+pub(crate) fn open(flood: &Flood, terrain: &Terrain, folder: &Path, reach: f64) -> Result<Outlines, ModelError> {
     let mut outlines = Vec::new();
     let far = surroundings(terrain, reach);
     for (number, obstacle) in flood.obstacle.iter().enumerate() {
@@ -47,7 +47,7 @@ pub(crate) fn open(flood: &Settings, terrain: &Terrain, folder: &Path, reach: f6
 
 /// The polygons of an obstacle, in model coordinates.
 pub(crate) fn polygons(obstacle: &Obstacle, terrain: &Terrain, folder: &Path) -> Result<Vec<Polygon>, ModelError> {
-    let to_model = |ring: Vec<[f64; 2]>| ring.into_iter().map(|place| terrain.to_model(place)).collect();
+    let to_model = |ring: Vec<[f64; 2]>| ring.into_iter().map(|position| terrain.to_model(position)).collect();
     if let Some(polygon) = &obstacle.polygon {
         return Ok(vec![vec![to_model(polygon.clone())]]);
     }
@@ -112,11 +112,7 @@ fn check_known(subject: &str, ring: &[[f64; 2]]) -> Result<(), ModelError> {
 
 pub(crate) fn check_overlap(subject: &str, ring: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
     check_known(subject, ring)?;
-    let bounds = terrain.bounds();
-    let beyond = |axis: usize, low: f64, high: f64| {
-        ring.iter().all(|corner| corner[axis] < low) || ring.iter().all(|corner| corner[axis] > high)
-    };
-    if beyond(0, bounds.x_min, bounds.x_max) || beyond(1, bounds.y_min, bounds.y_max) {
+    if is_beside(ring, terrain.bounds(), 0.0) {
         let [x, y] = ring[0];
         let what = format!(
             "{subject} lies outside the terrain: its first corner is at ({x}, {y}) m in the model's coordinates"

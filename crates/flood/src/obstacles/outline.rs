@@ -1,9 +1,9 @@
-//! Outlines of obstacles: which places are inside, and the way to the nearest wall.
+//! Outlines of obstacles: which positions are inside, and the way to the nearest wall.
 
-use crate::setup::is_inside;
+use crate::polygon::is_inside;
 use corpuscle_terrain::Bounds;
 
-/// A polygon of rings, each closed by itself; places that an odd number of them hold are inside.
+/// A polygon of rings, each closed by itself; positions that an odd number of them hold are inside.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Outline {
     /// The obstacle that it is a part of.
@@ -12,7 +12,7 @@ pub(crate) struct Outline {
     pub rings: Vec<Vec<[f64; 2]>>,
 }
 
-/// The nearest place of a wall.
+/// The nearest point of a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Nearest {
     /// Distance, m; negative inside.
@@ -37,12 +37,12 @@ impl Outline {
         self.rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| [*a, *b]))
     }
 
-    /// Whether a place is inside, by the even-odd rule.
+    /// Whether a position is inside, by the even-odd rule.
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
         self.rings.iter().filter(|ring| is_inside(ring, x, y)).count() % 2 == 1
     }
 
-    /// The way from its nearest wall to a place, m.
+    /// The way from its nearest wall to a position, m.
     fn way_from_wall(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let way = |[a, b]: [[f64; 2]; 2]| {
             let side = [b[0] - a[0], b[1] - a[1]];
@@ -56,10 +56,10 @@ impl Outline {
     }
 
     /// The nearest wall; `number` is that of this outline.
-    pub fn nearest(&self, place: [f64; 2], number: usize) -> Nearest {
-        let way = self.way_from_wall(place);
+    pub fn nearest(&self, position: [f64; 2], number: usize) -> Nearest {
+        let way = self.way_from_wall(position);
         let length = way[0].hypot(way[1]);
-        let sign = if self.contains(place) { -1.0 } else { 1.0 };
+        let sign = if self.contains(position) { -1.0 } else { 1.0 };
         let normal = if length > 0.0 { way.map(|along| sign * along / length) } else { [0.0; 2] };
         Nearest { distance: sign * length, normal, outline: number }
     }
@@ -96,7 +96,7 @@ const MOST_CELLS: f64 = 1e6;
 const MOST_ENTRIES: f64 = 2e7;
 
 impl Outlines {
-    /// Takes outlines; places within `reach` m of one are near it.
+    /// Takes outlines; positions within `reach` m of one are near it.
     pub fn new(all: Vec<Outline>, reach: f64) -> Self {
         let mut new = Self { all, ..Self::default() };
         let boxes: Vec<Bounds> = new.all.iter().map(|outline| widened(outline.bounds(), reach)).collect();
@@ -131,7 +131,7 @@ impl Outlines {
         bounds.map(|bounds| OutlineCells { corner: corner(bounds), size: *size, columns: *columns, near })
     }
 
-    /// The outlines that may be near a place.
+    /// The outlines that may be near a position.
     pub fn near(&self, [x, y]: [f64; 2]) -> &[u32] {
         match self.bounds {
             Some(bounds) if bounds.contains(x, y) => {
@@ -142,21 +142,21 @@ impl Outlines {
         }
     }
 
-    /// The outline that a place is inside, by its nearest wall.
-    pub fn around(&self, place: [f64; 2]) -> Option<Nearest> {
-        let numbers = self.near(place).iter().map(|&number| number as usize);
-        let mut holding = numbers.filter(|&number| self.all[number].contains(place));
-        holding.next().map(|number| self.all[number].nearest(place, number))
+    /// The outline that a position is inside, by its nearest wall.
+    pub fn around(&self, position: [f64; 2]) -> Option<Nearest> {
+        let numbers = self.near(position).iter().map(|&number| number as usize);
+        let mut holding = numbers.filter(|&number| self.all[number].contains(position));
+        holding.next().map(|number| self.all[number].nearest(position, number))
     }
 
-    /// Whether a place is inside one.
-    pub fn hold(&self, place: [f64; 2]) -> bool {
-        self.around(place).is_some()
+    /// Whether a position is inside one.
+    pub fn hold(&self, position: [f64; 2]) -> bool {
+        self.around(position).is_some()
     }
 
     /// The nearest wall of one outline.
-    pub fn nearest_of(&self, number: usize, place: [f64; 2]) -> Nearest {
-        self.all[number].nearest(place, number)
+    pub fn nearest_of(&self, number: usize, position: [f64; 2]) -> Nearest {
+        self.all[number].nearest(position, number)
     }
 }
 

@@ -57,7 +57,7 @@ fn polygon(record: &[u8]) -> Result<Polygon, String> {
     let rest = record.get(starts..).and_then(|rest| rest.split_at_checked(parts.checked_mul(4)?));
     let (starts, rest) = rest.ok_or_else(cut)?;
     let points = points.checked_mul(16).and_then(|bytes| rest.get(..bytes)).ok_or_else(cut)?;
-    let points: Vec<[f64; 2]> = points.as_chunks::<16>().0.iter().map(place).collect();
+    let points: Vec<[f64; 2]> = points.as_chunks::<16>().0.iter().map(point).collect();
     if points.as_flattened().iter().any(|number| !number.is_finite()) {
         return Err("has a corner that is not a finite number".into());
     }
@@ -72,7 +72,7 @@ fn polygon(record: &[u8]) -> Result<Polygon, String> {
         .ok_or_else(|| "has rings that begin where there is no corner".into())
 }
 
-fn place(bytes: &[u8; 16]) -> [f64; 2] {
+fn point(bytes: &[u8; 16]) -> [f64; 2] {
     let numbers = bytes.as_chunks::<8>().0;
     [f64::from_le_bytes(numbers[0]), f64::from_le_bytes(numbers[1])]
 }
@@ -141,12 +141,13 @@ mod tests {
     fn counts_that_the_file_cannot_hold_are_refused_before_anything_is_reserved() {
         let sound = file(&[content(5, &[&OUTER, &HOLE], 0)]);
         let at = HEADER + RECORD_HEADER + BEFORE_COUNTS;
-        for (place, number) in [(at, i32::MAX), (at, -1), (at + 4, i32::MAX), (at + 4, -1), (at + 8, -1), (at + 12, 99)]
+        for (offset, number) in
+            [(at, i32::MAX), (at, -1), (at + 4, i32::MAX), (at + 4, -1), (at + 8, -1), (at + 12, 99)]
         {
             let mut bytes = sound.clone();
-            bytes[place..place + 4].copy_from_slice(&number.to_le_bytes());
+            bytes[offset..offset + 4].copy_from_slice(&number.to_le_bytes());
             let words = polygons(&bytes).unwrap_err();
-            assert!(words.contains("record 1 has"), "{place} {number}: {words}");
+            assert!(words.contains("record 1 has"), "{offset} {number}: {words}");
         }
         let mut bytes = sound.clone();
         bytes[HEADER + 4..HEADER + 8].copy_from_slice(&(-8_i32).to_be_bytes());

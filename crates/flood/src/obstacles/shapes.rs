@@ -1,10 +1,10 @@
 //! Obstacles as solids, to be drawn.
 
 use super::Outline;
+use super::lines::lines;
 use super::open::polygons;
-use crate::voronoi::of_lines;
 use corpuscle_model::{ModelError, SolidShape};
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ const MOST_PARTS: f64 = 1e4;
 /// # Errors
 /// [`ModelError::Setup`] for a file that cannot be read or holds no polygon.
 pub fn obstacle_shapes(
-    flood: &Settings,
+    flood: &Flood,
     terrain: &Terrain,
     folder: &Path,
     high_enough: f64,
@@ -61,10 +61,10 @@ pub struct LineWall {
 ///
 /// # Errors
 /// [`ModelError::Setup`] for one that lies outside the terrain.
-pub fn line_walls(flood: &Settings, terrain: &Terrain, high_enough: f64) -> Result<Vec<LineWall>, ModelError> {
+pub fn line_walls(flood: &Flood, terrain: &Terrain, high_enough: f64) -> Result<Vec<LineWall>, ModelError> {
     let cell = terrain.map_grid().cell_size().into_iter().fold(f64::INFINITY, f64::min);
-    let walls = of_lines(flood, terrain, cell)?;
-    Ok(walls.into_iter().flat_map(|wall| line_parts(wall.ends, wall.crest, terrain, cell, high_enough)).collect())
+    let lines = lines(flood, terrain, cell)?;
+    Ok(lines.into_iter().flat_map(|line| line_parts(line.ends, line.crest, terrain, cell, high_enough)).collect())
 }
 
 fn line_parts(
@@ -103,15 +103,15 @@ mod tests {
         let terrain = Terrain::analytic(bounds, 1.0, |x, _| (0.5 * x, [0.5, 0.0]));
         let shape = upright(Outline { obstacle: 0, rings: vec![angle] }, &terrain, 3.0).unwrap();
         assert_eq!(shape.bounds, [[0.0; 3], [4.0, 3.0, 5.0]]);
-        let places = [
+        let positions = [
             ([0.5, 2.0, 2.0], -0.5),
             ([2.0, 2.0, 2.0], 1.0),
             ([-3.0, 4.0, 2.0], 10f64.sqrt()),
             ([3.0, 0.25, 2.0], -0.25),
             ([0.5, 2.0, 7.0], 2.0),
         ];
-        for (place, distance) in places {
-            assert!(((shape.distance)(place) - distance).abs() < 1e-12, "{place:?}");
+        for (position, distance) in positions {
+            assert!(((shape.distance)(position) - distance).abs() < 1e-12, "{position:?}");
         }
     }
 

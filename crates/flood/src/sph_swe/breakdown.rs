@@ -13,9 +13,9 @@ impl SphSweFlood {
     pub(super) fn defect_among(&self, particles: &[Particle], time: f64, step: u64) -> Option<ModelError> {
         let broken = particles.iter().filter_map(|particle| Some((particle, particle.defect()?)));
         let (particle, Defect { quantity, value, .. }) = broken.min_by_key(|(_, defect)| defect.rank)?;
-        let place = self.place_of(particle);
+        let position = self.position_of(particle);
         let what = format!(
-            "{place} the {quantity} of particle {} is {value:.4e}. Look at the ground and the water there, in the last frame; \
+            "{position} the {quantity} of particle {} is {value:.4e}. Look at the ground and the water there, in the last frame; \
              a shorter time step (flood.sph_swe.time_step_s) or a smaller flood.spacing_m may help",
             particle.id
         );
@@ -23,7 +23,7 @@ impl SphSweFlood {
     }
 
     /// The position of a particle, in words; the last finite one, if it is not finite now.
-    fn place_of(&self, particle: &Particle) -> String {
+    fn position_of(&self, particle: &Particle) -> String {
         let is_known = |particle: &&Particle| particle.x.is_finite() && particle.y.is_finite();
         let before = || self.state.particles.iter().filter(|before| before.id == particle.id).find(is_known);
         let Some(known) = Some(particle).filter(is_known).or_else(before) else { return "at an unknown place".into() };

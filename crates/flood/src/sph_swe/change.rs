@@ -4,7 +4,8 @@
 
 use super::SphSweFlood;
 use crate::LiveChange;
-use crate::setup::{load, setup};
+use crate::error::setup;
+use crate::series::load;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Manning, Series, SphSwe, Table};
 use serde::{Deserialize, Serialize};
@@ -17,7 +18,7 @@ pub(super) struct Overrides {
     discharges: Vec<(usize, Vec<[f64; 2]>)>,
     manning: Option<f64>,
     control: Option<bool>,
-    /// Gauges that were placed: names, and places in model coordinates.
+    /// Gauges that were placed: names, and positions in model coordinates.
     pub gauges: Vec<(String, [f64; 2])>,
 }
 

@@ -1,36 +1,52 @@
 //! Scheme `sph-swe`: the published stable SPH-SWE model.
 //!
 //! Source: "Real-time simulation of realistic fluid animation based on a stable SPH-SWE numerical model", Acta Physica Sinica (2021). Particles are columns of
-//! water of a fixed volume that move with it; depth, smoothing length and forces are formula by formula those of the paper (`solver.rs`). It has what the paper
-//! has, and what a film or a comparison needs beside it: inflows, friction, open, closed and periodic sides, gauges and maps.
+//! water of a fixed volume that move with it; depth, smoothing length and forces are formula by formula those of the paper. It has what the paper has, and what a
+//! film or a comparison needs beside it: inflows, friction, open, closed and periodic sides, gauges and maps.
+//!
+//! | folder | what |
+//! |---|---|
+//! | `neighbours` | cells, ghost particles, neighbour lists |
+//! | `density` | density sums, depths, smoothing lengths |
+//! | `forces` | pressure, viscosity, slope of the ground, control force |
+//! | `motion`, `friction` | positions and velocities |
+//! | `boundaries` | the sides of the terrain, and outflow over them |
+//! | `inflow`, `falling` | sources of water, and water in the air |
+//! | `obstacles` | boundary particles, their push, and that on obstacles |
+//! | `ground` | the ground under the particles |
+//! | `sampling`, `gauges`, `maps` | the water at a position, and what is recorded of it |
+//! | `seeding` | the particles at the start |
+//! | `gpu` | the same steps on a GPU; each pass's WGSL stands in the folder of the pass, with what is uploaded for it (`upload.rs`) |
+//!
+//! `solver.rs` evaluates densities and forces, `step.rs` takes a step.
 
-mod arrangement;
+mod boundaries;
 mod breakdown;
 mod change;
 mod density;
-mod edges;
-mod exchange;
 mod falling;
+mod forces;
+mod friction;
+mod gauges;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod ground;
 mod inflow;
 mod maps;
-mod measured;
 mod model;
+mod motion;
+mod neighbours;
 mod obstacles;
 mod open;
 mod particle;
-mod placed;
-mod sampler;
+mod sampling;
 mod seeding;
-mod smoothing;
 mod solver;
 mod step;
 mod surroundings;
 mod to_come;
 
 pub use particle::Particle;
-pub(crate) use sampler::Sampler;
 
 use self::maps::Maps;
 use crate::friction::Roughness;
@@ -39,10 +55,11 @@ use crate::sampling::Sample;
 use crate::zone::Source;
 use change::Overrides;
 use corpuscle_model::{Account, CompensatedSum};
-use corpuscle_scene::{Flood as Settings, Table};
+use corpuscle_scene::{Flood, Table};
 use falling::Falling;
+use sampling::Sampler;
 use serde::{Deserialize, Serialize};
-use solver::SphSwe;
+use solver::SphSweSolver;
 use step::BlockUpdate;
 use surroundings::Surroundings;
 
@@ -54,10 +71,10 @@ const SAMPLED: f64 = 0.5;
 
 /// Shallow water as particles of a fixed volume over terrain (scheme `sph-swe`).
 pub struct SphSweFlood {
-    settings: Settings,
+    settings: Flood,
     seed: u64,
     surroundings: Surroundings,
-    solver: SphSwe,
+    solver: SphSweSolver,
     roughness: Roughness,
     sources: Vec<Source>,
     points: Vec<PointGauge>,
@@ -184,11 +201,11 @@ impl SphSweFlood {
     }
 
     /// The `[flood]` of the scene with every default that depends on ground and water filled in.
-    pub fn settings(&self) -> &Settings {
+    pub fn settings(&self) -> &Flood {
         &self.settings
     }
 
-    /// The water at a place in model coordinates, at the time shown.
+    /// The water at a position in model coordinates, at the time shown.
     pub fn sample(&self, x: f64, y: f64) -> Sample {
         self.sampler(self.since()).at(x, y)
     }

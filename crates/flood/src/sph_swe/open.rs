@@ -1,20 +1,21 @@
 //! How a flood is set up.
 
+use super::boundaries::{EdgeRule, EdgeRules};
 use super::change::Overrides;
-use super::edges::{EdgeRule, EdgeRules};
+use super::density::h_of_density;
 use super::falling::Falling;
 use super::maps::Maps;
 use super::obstacles::Obstacles;
 use super::particle::Particle;
 use super::seeding::Body;
-use super::solver::{SphSwe, h_of_density};
+use super::solver::SphSweSolver;
 use super::surroundings::Surroundings;
 use super::{SphSweFlood, State};
 use crate::friction::Roughness;
-use crate::setup::{self, InitialWater};
-use crate::{fields, limits, obstacles, spacing};
+use crate::initial_water::{self, InitialWater};
+use crate::{error, fields, limits, obstacles, setup, spacing};
 use corpuscle_model::{Account, CompensatedSum, ModelError};
-use corpuscle_scene::{Block, Edge, Flood as Settings, Scheme, SmoothingForm, SphSwe as Parameters};
+use corpuscle_scene::{Block, Edge, Flood, Scheme, SmoothingForm, SphSwe};
 use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 use corpuscle_terrain::Terrain;
 use rand::RngExt;
@@ -31,9 +32,9 @@ impl SphSweFlood {
     ///
     /// # Errors
     /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
-    pub fn new(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+    pub fn new(settings: &Flood, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         let ground = Arc::clone(&terrain);
-        let bodies = setup::initial_water(settings, &ground, folder)?;
+        let bodies = initial_water::initial_water(settings, &ground, folder)?;
         Self::with_water(settings, seed, folder, terrain, &bodies)
     }
 
@@ -41,14 +42,9 @@ impl SphSweFlood {
     ///
     /// # Errors
     /// As [`SphSweFlood::new`].
-    pub fn to_restore(
-        settings: &Settings,
-        seed: u64,
-        folder: &Path,
-        terrain: Arc<Terrain>,
-    ) -> Result<Self, ModelError> {
+    pub fn to_restore(settings: &Flood, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         let ground = Arc::clone(&terrain);
-        let bodies = setup::initial_water(settings, &ground, folder)?;
+        let bodies = initial_water::initial_water(settings, &ground, folder)?;
         Self::empty(settings, seed, folder, terrain, &bodies)
     }
 
@@ -57,7 +53,7 @@ impl SphSweFlood {
     /// # Errors
     /// As [`SphSweFlood::new`].
     pub fn with_water(
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -71,14 +67,14 @@ impl SphSweFlood {
 
     /// All but the particles.
     fn empty(
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
         bodies: &[InitialWater],
     ) -> Result<Self, ModelError> {
         if settings.scheme != Scheme::SphSwe {
-            return Err(setup::setup(
+            return Err(error::setup(
                 "this is the model of scheme sph-swe: corpuscle_flood::open chooses by the scene",
             ));
         }
@@ -88,7 +84,8 @@ impl SphSweFlood {
             .map_every_s
             .ok_or_else(|| ModelError::Setup("flood.map_every_s is open; resolve the scene's defaults first".into()))?;
         let spacing = spacing::resolve(flood, &terrain, folder)?;
-        let depth = *flood.spacing_depth_m.get_or_insert_with(|| setup::mean_depth(bodies, &terrain).unwrap_or(1.0));
+        let depth =
+            *flood.spacing_depth_m.get_or_insert_with(|| initial_water::mean_depth(bodies, &terrain).unwrap_or(1.0));
         let volume = spacing * spacing * depth;
         // Neighbours in the reach: pi h0^2 rho0 / m, whatever the depth. Table 1 has particles of 1 m3.
         let h = *flood.sph_swe.smoothing_length_m.get_or_insert(TABLE_1_SMOOTHING * volume.sqrt());
@@ -98,7 +95,7 @@ impl SphSweFlood {
         limits::check_count(flood, bodies, &terrain, spacing, volume)?;
         let edges = edge_rules(flood, &terrain)?;
         let reach = flood.sph_swe.largest_smoothing * h;
-        let closest = setup::closest(bodies, &terrain, spacing, volume);
+        let closest = initial_water::closest(bodies, &terrain, spacing, volume);
         let outlines = obstacles::open(flood, &terrain, folder, reach)?;
         let points = setup::point_gauges(flood, &terrain)?;
         let warnings = setup::warn_of_gauges(&points, flood, &outlines.all, &terrain);
@@ -133,7 +130,7 @@ impl SphSweFlood {
             lines: setup::line_gauges(flood, &terrain, spacing)?,
             map_period,
             surroundings: Surroundings { terrain, edges, obstacles },
-            solver: SphSwe::new(settings.sph_swe.clone(), h, settings.gravity_m_per_s2),
+            solver: SphSweSolver::new(settings.sph_swe.clone(), h, settings.gravity_m_per_s2),
             settings,
             seed,
             sources,
@@ -244,12 +241,12 @@ impl SphSweFlood {
 }
 
 /// The rules of the sides.
-fn edge_rules(scene: &Settings, terrain: &Terrain) -> Result<EdgeRules, ModelError> {
+fn edge_rules(scene: &Flood, terrain: &Terrain) -> Result<EdgeRules, ModelError> {
     let rule = |edge: &Edge| match edge {
         Edge::Open => Ok(EdgeRule::Open),
         Edge::Wall => Ok(EdgeRule::Wall),
         Edge::Periodic => Ok(EdgeRule::Periodic),
-        _ => Err(setup::setup("sides of this kind are for scheme voronoi: see [flood.edges]")),
+        _ => Err(error::setup("sides of this kind are for scheme voronoi: see [flood.edges]")),
     };
     let edges = &scene.edges;
     let rules = [rule(&edges.west)?, rule(&edges.east)?, rule(&edges.south)?, rule(&edges.north)?];
@@ -258,13 +255,13 @@ fn edge_rules(scene: &Settings, terrain: &Terrain) -> Result<EdgeRules, ModelErr
 
 /// Refuses an initial smoothing length, m, with which a particle's weight of itself, m W(0, h), is more than its density: with
 /// `smoothing = "density"` h would be shorter in the next step, that weight larger, and so on without end.
-fn check_smoothing(parameters: &Parameters, h: f64, volume: f64) -> Result<(), ModelError> {
+fn check_smoothing(parameters: &SphSwe, h: f64, volume: f64) -> Result<(), ModelError> {
     // The depth that a particle alone has where its smoothing length is h, which goes with a depth of 1 m.
     let own_depth = volume * Kernel::<2>::new(parameters.kernel, h).value(0.0);
     if own_depth < 1.0 || parameters.smoothing != SmoothingForm::Density {
         return Ok(());
     }
-    Err(setup::setup(format!(
+    Err(error::setup(format!(
         "flood.sph_swe.smoothing_length_m = {h} is so short for particles of {volume:.4} m3 that one alone would get deeper with each step; \
          give more than {:.4} ({:.4} gives as many neighbours as the paper has)",
         h * own_depth.sqrt(),

@@ -12,9 +12,9 @@ const SPEED: usize = 3;
 /// A particle: a column of water that moves with the flow, of a volume that never changes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Particle {
-    /// Place, m.
+    /// Position, m.
     pub x: f64,
-    /// Place, m.
+    /// Position, m.
     pub y: f64,
     /// Velocity, m/s.
     pub u: f64,

@@ -7,8 +7,9 @@ use super::boundaries::Boundary;
 use super::friction::Slowing;
 use super::rain::Weather;
 use crate::LiveChange;
-use crate::limits::span;
-use crate::setup::{load, setup};
+use crate::error::setup;
+use crate::extent::span;
+use crate::series::load;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Manning, Series, Table};
 use serde::{Deserialize, Serialize};
@@ -154,8 +155,8 @@ impl VoronoiFlood {
 
     /// Puts another table in the place of a value over time, and remembers what the scene says.
     fn replace(&mut self, over: Over, table: Table) {
-        let Some(place) = self.series(over) else { return };
-        let written = std::mem::replace(place, table);
+        let Some(slot) = self.series(over) else { return };
+        let written = std::mem::replace(slot, table);
         if self.written.iter().all(|(of, _)| *of != over) {
             self.written.push((over, written));
         }
@@ -176,8 +177,8 @@ impl VoronoiFlood {
     /// All is as the scene says again.
     pub(super) fn clear_overrides(&mut self) {
         for (over, written) in std::mem::take(&mut self.written) {
-            if let Some(place) = self.series(over) {
-                *place = written;
+            if let Some(slot) = self.series(over) {
+                *slot = written;
             }
         }
         if self.state.overrides.weather {

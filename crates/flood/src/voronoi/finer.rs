@@ -2,16 +2,17 @@
 
 use super::mesh::Grading;
 use super::walls::{Wall, of_outlines};
+use crate::error::setup;
+use crate::extent::is_beside;
 use crate::obstacles::{Outline, polygons};
-use crate::setup::setup;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Flood as Settings, Obstacle};
+use corpuscle_scene::{Flood, Obstacle};
 use corpuscle_terrain::{Polygon, Terrain};
 use std::path::Path;
 
 /// The parts of a scene with finer cells than those `spacing` m wide. `outlines` are those of its obstacles, `lines` its walls of no thickness.
 pub(super) fn grading(
-    scene: &Settings,
+    scene: &Flood,
     terrain: &Terrain,
     folder: &Path,
     (spacing, outlines, lines): (f64, &[Outline], &[Wall]),
@@ -34,8 +35,8 @@ pub(super) fn grading(
             ..Obstacle::default()
         };
         let polygons = polygons(&area, terrain, folder)?;
-        let line: Vec<_> = finer.line.iter().flatten().map(|place| terrain.to_model(*place)).collect();
-        check_overlap(number, finer.within_m, &polygons, &line, terrain)?;
+        let line: Vec<_> = finer.line.iter().flatten().map(|position| terrain.to_model(*position)).collect();
+        check_region(number, finer.within_m, &polygons, &line, terrain)?;
         let along = line.windows(2).map(|pair| [pair[0], pair[1]]);
         let walls = of_outlines(outlines).chain(lines.iter().copied()).map(|wall| wall.ends);
         let walls = walls.filter(|_| finer.walls);
@@ -45,7 +46,7 @@ pub(super) fn grading(
 }
 
 /// Refuses a region of finer cells that lies outside the terrain as a whole.
-fn check_overlap(
+fn check_region(
     number: usize,
     within: f64,
     polygons: &[Polygon],
@@ -53,20 +54,13 @@ fn check_overlap(
     terrain: &Terrain,
 ) -> Result<(), ModelError> {
     let bounds = terrain.bounds();
-    let is_beside = |corners: &[[f64; 2]]| {
-        let beyond = |axis: usize, low: f64, high: f64| {
-            corners.iter().all(|corner| corner[axis] < low - within)
-                || corners.iter().all(|corner| corner[axis] > high + within)
-        };
-        beyond(0, bounds.x_min, bounds.x_max) || beyond(1, bounds.y_min, bounds.y_max)
-    };
     let mut shapes = polygons
         .iter()
         .filter_map(|rings| rings.first())
         .map(Vec::as_slice)
         .chain((!line.is_empty()).then_some(line))
         .peekable();
-    if shapes.peek().is_some() && shapes.all(is_beside) {
+    if shapes.peek().is_some() && shapes.all(|corners| is_beside(corners, bounds, within)) {
         return Err(setup(format!(
             "flood.finer.{number} lies outside the terrain: its positions are in the terrain's coordinates, x before y"
         )));

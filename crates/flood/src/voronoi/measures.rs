@@ -36,13 +36,13 @@ impl VoronoiFlood {
         self.broadcast(&Command::GaugeRow);
         let placed: Vec<PointGauge> = self.placed().collect();
         let points = self.points.iter().chain(&placed).map(|point| point.at);
-        let samples = self.samples(points.chain(self.lines.iter().flat_map(|line| line.places())).collect());
+        let samples = self.samples(points.chain(self.lines.iter().flat_map(|line| line.positions())).collect());
         let (of_points, mut of_lines) = samples.split_at(self.points.len() + placed.len());
         let mut rows =
             self.points.iter().chain(&placed).zip(of_points).map(|(point, water)| point.row(&self.terrain, *water));
         let mut row: Vec<f64> = rows.by_ref().take(self.points.len()).flatten().collect();
         for line in &self.lines {
-            let (of_line, rest) = of_lines.split_at(line.places().count());
+            let (of_line, rest) = of_lines.split_at(line.positions().count());
             row.push(line.discharge(of_line));
             of_lines = rest;
         }

@@ -51,9 +51,6 @@ mod walls;
 mod water;
 
 pub use rain::RainFunction;
-pub(crate) use start::of_scene;
-pub use start::{Filling, OfPosition, StartWater};
-pub(crate) use walls::of_lines;
 
 use self::structures::{Flows, Structures};
 use crate::friction::Roughness;
@@ -65,7 +62,7 @@ use bed::Bed;
 use boundaries::Boundaries;
 use change::Overrides;
 use corpuscle_model::{Account, ExactSum};
-use corpuscle_scene::{Flood as Settings, Table};
+use corpuscle_scene::{Flood, Table};
 use corpuscle_terrain::Terrain;
 use domain::Domain;
 use maps::Record;
@@ -87,7 +84,7 @@ const CHUNK: usize = 1024;
 
 /// A flood by scheme `voronoi`.
 pub struct VoronoiFlood {
-    settings: Settings,
+    settings: Flood,
     /// What relative paths refer to.
     folder: PathBuf,
     terrain: Arc<Terrain>,
@@ -182,7 +179,7 @@ impl State {
 
 impl VoronoiFlood {
     /// The `[flood]` of the scene with every default that depends on ground and water filled in.
-    pub fn settings(&self) -> &Settings {
+    pub fn settings(&self) -> &Flood {
         &self.settings
     }
 

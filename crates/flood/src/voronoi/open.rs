@@ -12,18 +12,20 @@ use super::mesh::{Blocks, Grading, LINE, Layout, Mesh, NONE};
 use super::patch::Patch;
 use super::rain::{RainFunction, Soaked, Weather};
 use super::solver::Solver;
-use super::start::{self, StartWater};
+use super::start;
 use super::step::drops;
 use super::structures::Patches;
 use super::structures::{Structures, warn_of_links};
 use super::{Inflow, State, VoronoiFlood, domain, finer, walls};
+use crate::error::setup;
 use crate::friction::Roughness;
-use crate::setup::{self, setup};
+use crate::initial_water::{self, StartWater};
+use crate::setup;
 use crate::zone::Zone;
 use crate::{limits, obstacles, spacing};
 use corpuscle_model::{Account, ExactSum, ModelError};
 use corpuscle_processes::Processes;
-use corpuscle_scene::{Flood as Settings, TimeSteps};
+use corpuscle_scene::{Flood, TimeSteps};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 use std::path::Path;
@@ -47,7 +49,7 @@ impl VoronoiFlood {
     ///
     /// # Errors
     /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
-    pub fn new(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+    pub fn new(settings: &Flood, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         Self::new_on(&Processes::alone(), settings, seed, folder, terrain)
     }
 
@@ -58,14 +60,14 @@ impl VoronoiFlood {
     /// As [`VoronoiFlood::new`], of any process.
     pub fn new_on(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
     ) -> Result<Self, ModelError> {
         start::check_polygons(settings, &terrain)?;
         let ground = Arc::clone(&terrain);
-        let bodies = processes.agree(start::of_scene(settings, &ground, folder), ModelError::Setup)?;
+        let bodies = processes.agree(initial_water::of_scene(settings, &ground, folder), ModelError::Setup)?;
         Self::with_water_on(processes, settings, seed, folder, terrain, &bodies)
     }
 
@@ -73,12 +75,7 @@ impl VoronoiFlood {
     ///
     /// # Errors
     /// As [`VoronoiFlood::new`].
-    pub fn to_restore(
-        settings: &Settings,
-        seed: u64,
-        folder: &Path,
-        terrain: Arc<Terrain>,
-    ) -> Result<Self, ModelError> {
+    pub fn to_restore(settings: &Flood, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         Self::to_restore_on(&Processes::alone(), settings, seed, folder, terrain)
     }
 
@@ -88,7 +85,7 @@ impl VoronoiFlood {
     /// As [`VoronoiFlood::new_on`].
     pub fn to_restore_on(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -103,7 +100,7 @@ impl VoronoiFlood {
     /// # Errors
     /// As [`VoronoiFlood::new`].
     pub fn with_water(
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -118,7 +115,7 @@ impl VoronoiFlood {
     /// As [`VoronoiFlood::new_on`].
     pub fn with_water_on(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -163,7 +160,7 @@ impl VoronoiFlood {
     /// All but the water.
     fn empty(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -178,7 +175,7 @@ impl VoronoiFlood {
     /// All but cells and water.
     fn without_cells(
         processes: &Processes,
-        settings: &Settings,
+        settings: &Flood,
         seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
@@ -349,7 +346,7 @@ impl VoronoiFlood {
         let half_width = 2.0 * self.solver.mesh.layout.spacing();
         let lines = self.settings.edge_line.iter().flat_map(|line| line.line.windows(2));
         let band = |ends: &[[f64; 2]]| Zone::Band {
-            line: ends.iter().map(|place| self.terrain.to_model(*place)).collect(),
+            line: ends.iter().map(|position| self.terrain.to_model(*position)).collect(),
             half_width,
         };
         lines.flat_map(|ends| Patch::tiles(&band(ends), &self.solver.mesh)).collect()
@@ -401,7 +398,7 @@ impl VoronoiFlood {
         self.state.records.resize(mesh.len(), DRY);
         let borders = &self.solver.borders[self.obstacle_of.len()..];
         let at = |border: &u32| mesh.obstacle_faces.binary_search_by_key(border, |(face, _)| *face).ok();
-        let obstacles = borders.iter().map(|border| at(border).map(|place| mesh.obstacle_faces[place].1));
+        let obstacles = borders.iter().map(|border| at(border).map(|index| mesh.obstacle_faces[index].1));
         self.obstacle_of.extend(obstacles.map(|obstacle| obstacle.unwrap_or(NONE)));
         self.solver.crests = walls::crests(mesh);
         self.boundaries.extend(&self.solver, &self.terrain);

@@ -770,7 +770,7 @@ impl Chunks {
 }
 
 fn insert(list: &mut Vec<u32>, value: u32) {
-    if let Err(place) = list.binary_search(&value) {
-        list.insert(place, value);
+    if let Err(index) = list.binary_search(&value) {
+        list.insert(index, value);
     }
 }

@@ -8,7 +8,7 @@ use super::{DENSITY, State, VoronoiFlood, maps, walls};
 use crate::fields::block_velocity;
 use crate::setup::{lattice, random};
 use corpuscle_model::{ExactSum, ModelError};
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_terrain::{Bounds, Terrain};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ pub(super) struct Drop {
 pub(super) const FIRST_DROP: u64 = 1 << 48;
 
 /// The drops of the blocks of a scene: layers of a lattice, each shifted a little at random so that no two stand one above the other.
-pub(super) fn drops(scene: &Settings, spacing: f64, terrain: &Terrain, seed: u64) -> Vec<Drop> {
+pub(super) fn drops(scene: &Flood, spacing: f64, terrain: &Terrain, seed: u64) -> Vec<Drop> {
     let mut random = random(seed, u64::MAX);
     let volume = spacing * spacing * scene.spacing_depth_m.unwrap_or(1.0);
     let mut drops = Vec::new();
@@ -38,9 +38,9 @@ pub(super) fn drops(scene: &Settings, spacing: f64, terrain: &Terrain, seed: u64
         let velocity = block_velocity(&water.velocity_m_per_s, terrain);
         let [columns, rows] = lattice(block, terrain, spacing).map(|count| count as usize);
         for number in 0..block.layers * columns * rows {
-            let place = [number % columns, number / columns % rows];
+            let index = [number % columns, number / columns % rows];
             let mut at =
-                |axis: usize| from[axis] + (place[axis] as f64 + 0.5 + random.random_range(-0.2..0.2)) * spacing;
+                |axis: usize| from[axis] + (index[axis] as f64 + 0.5 + random.random_range(-0.2..0.2)) * spacing;
             let z = bottom + ((number / (columns * rows)) as f64 + 0.5) * spacing;
             let [x, y] = [at(0), at(1)];
             let [u, v] = velocity(x, y);
@@ -225,7 +225,7 @@ impl VoronoiFlood {
     fn broken_position(&self) -> Option<[f64; 2]> {
         let mesh = &self.solver.mesh;
         let position = |cell: usize| {
-            let tile = mesh.layout.place(mesh.point[cell]).0 as u32;
+            let tile = mesh.layout.tile_and_index(mesh.point[cell]).0 as u32;
             let made = self.tiles().iter().position(|made| *made == tile).unwrap_or(usize::MAX);
             (made, cell, self.terrain.to_own(mesh.centroid[cell]))
         };
@@ -240,14 +240,14 @@ impl VoronoiFlood {
 
     /// The error that says where a value is not finite; goes back to the state before.
     fn breakdown(&mut self, time: f64) -> ModelError {
-        let place = self.broken_position();
+        let position = self.broken_position();
         self.solver.take_back();
         self.solver.count();
-        let place = place.map_or(String::new(), |[x, y]| format!(" at [{x:.6}, {y:.6}]"));
+        let position = position.map_or(String::new(), |[x, y]| format!(" at [{x:.6}, {y:.6}]"));
         ModelError::Breakdown {
             time,
             step: self.state.steps,
-            what: format!("a flux{place} is no longer a number; look in the last frame at the water there"),
+            what: format!("a flux{position} is no longer a number; look in the last frame at the water there"),
         }
     }
 }

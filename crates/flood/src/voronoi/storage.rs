@@ -22,9 +22,9 @@ pub(crate) fn heights(parts: &[Vec<[f64; 2]>], bed: f64, height: impl Fn([f64; 2
             let b = part[(k + 1) % part.len()];
             let [p, q] = [*a, b].map(|r| [r[0] - centre[0], r[1] - centre[1]]);
             let area = 0.5 * (p[0] * q[1] - p[1] * q[0]);
-            let place = |[s, t]: [f64; 2]| [0, 1].map(|axis| centre[axis] + s * p[axis] + t * q[axis]);
+            let position = |[s, t]: [f64; 2]| [0, 1].map(|axis| centre[axis] + s * p[axis] + t * q[axis]);
             samples.extend(
-                middles().map(|at| [height(place(at)), area / (TRIANGLE_DIVISIONS * TRIANGLE_DIVISIONS) as f64]),
+                middles().map(|at| [height(position(at)), area / (TRIANGLE_DIVISIONS * TRIANGLE_DIVISIONS) as f64]),
             );
         }
     }

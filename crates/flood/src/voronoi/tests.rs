@@ -176,7 +176,7 @@ fn flood(scene: &str, seed: u64) -> VoronoiFlood {
     VoronoiFlood::new(&scene.flood, seed, Path::new(""), Arc::new(terrain)).unwrap()
 }
 
-/// Obstacles across places where cells grow: a whole cell may be smaller there than a piece of a larger one that is joined to it.
+/// Obstacles across regions where cells grow: a whole cell may be smaller there than a piece of a larger one that is joined to it.
 #[test]
 fn cells_close_where_walls_cut_cells_of_several_sizes() {
     for seed in (0..20).chain([142_053]) {

@@ -1,8 +1,5 @@
-//! What a scene must hold to beyond its types.
+//! What a scene must hold to beyond its types; what the keys of a model must, is in its own folder.
 
-mod dew;
-mod flood;
-mod gas;
 mod terrain;
 
 use crate::series::check_rows;
@@ -43,7 +40,7 @@ pub fn is_name(name: &str) -> bool {
 }
 
 /// Whether two names make the same name of a file, in which spaces are `_`.
-fn is_same_file(one: &str, other: &str) -> bool {
+pub(crate) fn is_same_file(one: &str, other: &str) -> bool {
     one.replace(' ', "_") == other.replace(' ', "_")
 }
 
@@ -73,7 +70,7 @@ impl Check {
         self.count("run.gauge_every_s", "gauge rows", run.until_s / run.gauge_period_s(), 1e8)
     }
 
-    fn count(&self, key: &str, of: &str, number: f64, most: f64) -> Checked {
+    pub(crate) fn count(&self, key: &str, of: &str, number: f64, most: f64) -> Checked {
         self.require(key, number < most, || format!("would make {number:.0} {of}; fewer than {most:.0} are possible"))
     }
 
@@ -135,7 +132,7 @@ impl Check {
     }
 
     /// The problem at `key`, with its value where that is short.
-    fn problem(&self, key: &str, what: &str) -> Box<Problem> {
+    pub(crate) fn problem(&self, key: &str, what: &str) -> Box<Problem> {
         let value = key.split('.').try_fold(&self.values, |value, word| match value {
             Value::Array(items) => items.get(word.parse::<usize>().ok()?),
             table => table.get(word),

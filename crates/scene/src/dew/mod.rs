@@ -1,7 +1,8 @@
 //! What a dew scene says: humid air, cold solids, and the drops on them.
 //!
-//! Lengths are in m, temperatures in °C; every place, velocity and acceleration has three numbers.
+//! Lengths are in m, temperatures in °C; every position, velocity and acceleration has three numbers.
 
+mod check;
 mod faces;
 mod fan;
 mod scene;

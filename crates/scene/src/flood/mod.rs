@@ -1,7 +1,8 @@
 //! What a flood scene says. Lengths in m, times in s, discharges in m3/s, in the terrain's coordinates
-//! (for a geographic terrain: longitude and latitude in degrees wherever a place is named).
+//! (for a geographic terrain: longitude and latitude in degrees wherever a position is named).
 
 mod adaptive;
+mod check;
 mod finer;
 mod friction;
 mod obstacle;
@@ -67,7 +68,7 @@ pub struct Flood {
     pub storage: Storage,
     /// Whether all cells take the same time step (scheme `voronoi`).
     pub time_steps: TimeSteps,
-    /// A place counts as wet above this depth, m (maps and extent).
+    /// A position counts as wet above this depth, m (maps and extent).
     pub wet_depth_m: f64,
     /// Interval at which the maps of maxima, arrival and duration sample the water, s. Left out: the gauge period.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -457,10 +458,10 @@ pub struct Inflow {
 pub struct Gauge {
     /// Name, unique in the scene.
     pub name: String,
-    /// Place `[x, y]` in the terrain's coordinates.
+    /// Position `[x, y]` in the terrain's coordinates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 2]>,
-    /// Place as longitude and latitude, degrees (WGS 84).
+    /// Position as longitude and latitude, degrees (WGS 84).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lon_lat: Option<[f64; 2]>,
 }

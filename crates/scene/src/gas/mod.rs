@@ -1,9 +1,10 @@
 //! What a gas scene says.
 //!
-//! A scene has two or three dimensions, as many as its `size` has numbers; every place, velocity and acceleration has as
+//! A scene has two or three dimensions, as many as its `size` has numbers; every position, velocity and acceleration has as
 //! many. Quantities are in reduced units, with Boltzmann's constant 1 and no names of units, or in SI units: m, s, kg,
 //! K, and pressure in Pa (in two dimensions N/m).
 
+mod check;
 mod scene;
 mod walls;
 
@@ -224,7 +225,7 @@ pub struct Ball {
     /// What it is; balls of one name are one set, and may be of the name of a species.
     #[serde(default = "ball")]
     pub name: String,
-    /// Place of its centre at the start.
+    /// Position of its centre at the start.
     pub position: Vec<f64>,
     /// Velocity at the start. Left out: at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -91,7 +91,7 @@ pub enum Motion {
 pub struct Partition {
     /// The axis that it stands across.
     pub axis: Axis,
-    /// Its place along that axis.
+    /// Its position along that axis.
     pub at: f64,
     /// Time from which it is removed, s. Left out: it stays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -127,7 +127,7 @@ impl Axis {
     /// All three.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// Its number in places and velocities: 0, 1 or 2.
+    /// Its number in positions and velocities: 0, 1 or 2.
     pub fn index(self) -> usize {
         self as usize
     }

@@ -1,9 +1,8 @@
 // The cubic spline over its factors, of q = r/h with the support h, twice the smoothing length. Twin of `cubic_spline.rs`.
+#import cubic_spline_shape
+
 fn value_shape(q_squared: f32) -> f32 {
-    let q = 2.0 * sqrt(q_squared);
-    let outer = max(2.0 - q, 0.0);
-    let inner = max(1.0 - q, 0.0);
-    return outer * outer * outer - 4.0 * inner * inner * inner;
+    return cubic_spline_shape(2.0 * sqrt(q_squared));
 }
 
 fn slope_shape(q: f32) -> f32 {

@@ -65,6 +65,9 @@ pub trait SmoothingKernel<const D: usize>: Copy + Send + Sync {
 /// Name of the piece that shaders import for [`Kernel::device_piece`].
 pub const KERNEL_PIECE: &str = "smoothing_kernel";
 
+/// Name and text of a piece that shaders import for the cubic spline, whichever kernel was chosen; that spline's own piece imports it too.
+pub const CUBIC_SPLINE_SHAPE: (&str, &str) = ("cubic_spline_shape", include_str!("cubic_spline_shape.wgsl"));
+
 /// The kernel that was chosen, of some support.
 #[derive(Debug, Clone, Copy)]
 pub enum Kernel<const D: usize> {
@@ -93,7 +96,8 @@ impl<const D: usize> Kernel<D> {
         [kernel.value_factor(), kernel.slope_factor(), kernel.laplacian_factor()]
     }
 
-    /// The same as a shader's piece: its shapes, and their factors at support 1 as `VALUE_FACTOR`, `SLOPE_FACTOR` and `LAPLACIAN_FACTOR`.
+    /// The same as a shader's piece: its shapes, and their factors at support 1 as `VALUE_FACTOR`, `SLOPE_FACTOR` and `LAPLACIAN_FACTOR`. Beside it
+    /// shaders need [`CUBIC_SPLINE_SHAPE`].
     pub fn device_piece(name: KernelName) -> String {
         let [value, slope, laplacian] = Self::device_factors(name);
         format!(

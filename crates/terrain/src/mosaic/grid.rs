@@ -4,7 +4,7 @@ use crate::conversion::Conversion;
 use crate::{Georeference, Raster, TerrainError};
 use std::path::PathBuf;
 
-/// Parts of a cell by which a place on a grid may be off.
+/// Parts of a cell by which a position on a grid may be off.
 const ROUNDING: f64 = 0.01;
 
 /// A grid that holds several rasters.
@@ -21,7 +21,7 @@ impl Grid {
         let area = |raster: &Raster| raster.georeference.cell[0] * raster.georeference.cell[1];
         let own = rasters.iter().map(|(_, raster)| raster).filter(|raster| raster.georeference.system == *system);
         let finest = own.min_by(|a, b| area(a).total_cmp(&area(b))).unwrap_or(&rasters[0].1);
-        let place = finest.georeference.clone();
+        let georeference = finest.georeference.clone();
         let mut all = finest.outline();
         for (path, raster) in rasters {
             let outline = Conversion::between(raster.georeference.system.as_ref(), system.as_ref())
@@ -30,15 +30,18 @@ impl Grid {
             all = all.with(outline);
         }
         let cells = |length: f64, axis: usize| {
-            let cells = length / place.cell[axis];
+            let cells = length / georeference.cell[axis];
             if (cells - cells.round()).abs() < ROUNDING { cells.round() } else { cells.ceil() }
         };
-        let west = cells(place.corner[0] - all.west, 0);
-        let north = cells(all.north - place.corner[1], 1);
-        let columns = west + cells(all.east - place.corner[0], 0);
-        let rows = north + cells(place.corner[1] - all.south, 1);
-        let corner = [place.corner[0] - west * place.cell[0], place.corner[1] + north * place.cell[1]];
-        Ok(Self { georeference: Georeference { corner, ..place }, size: [columns as usize, rows as usize] })
+        let west = cells(georeference.corner[0] - all.west, 0);
+        let north = cells(all.north - georeference.corner[1], 1);
+        let columns = west + cells(all.east - georeference.corner[0], 0);
+        let rows = north + cells(georeference.corner[1] - all.south, 1);
+        let corner = [
+            georeference.corner[0] - west * georeference.cell[0],
+            georeference.corner[1] + north * georeference.cell[1],
+        ];
+        Ok(Self { georeference: Georeference { corner, ..georeference }, size: [columns as usize, rows as usize] })
     }
 
     /// True for a raster whose cells are cells of this grid.

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use tile::Tile;
 
-/// Heights that two files give for the same place differ when they do by more than this, m.
+/// Heights that two files give for the same position differ when they do by more than this, m.
 const SAME_HEIGHT: f64 = 0.01;
 
 /// Several rasters as one, on the grid of the finest of those in the first one's reference system. Rasters that lie on

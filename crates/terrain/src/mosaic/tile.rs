@@ -17,7 +17,7 @@ pub(super) struct Tile {
     /// Columns and rows of the common grid in which it may lie.
     pub columns: Range<usize>,
     pub rows: Range<usize>,
-    /// Heights at the centres of the cells that would lie round it, in the order of [`Tile::ring_places`].
+    /// Heights at the centres of the cells that would lie round it, in the order of [`Tile::ring_points`].
     ring: Vec<Option<f64>>,
 }
 
@@ -71,9 +71,9 @@ impl Tile {
         self.position_of(grid.georeference.centre(column, row), &self.conversion)
     }
 
-    /// Its own fractional (column, row) of a place, converted where it must be; none outside.
-    fn position_of(&self, place: [f64; 2], conversion: &Conversion) -> Option<[f64; 2]> {
-        let position = self.raster.georeference.position(conversion.place(place).ok()?);
+    /// Its own fractional (column, row) of a position, converted where it must be; none outside.
+    fn position_of(&self, point: [f64; 2], conversion: &Conversion) -> Option<[f64; 2]> {
+        let position = self.raster.georeference.position(conversion.convert(point).ok()?);
         let inside = |axis: usize, count: usize| (-0.5..=count as f64 - 0.5).contains(&position[axis]);
         (inside(0, self.raster.columns) && inside(1, self.raster.rows)).then_some(position)
     }
@@ -121,12 +121,12 @@ impl Tile {
     }
 
     /// Where the cells round the raster would lie, in its own coordinates.
-    fn ring_places(&self) -> Vec<[f64; 2]> {
+    fn ring_points(&self) -> Vec<[f64; 2]> {
         let (columns, rows) = (self.raster.columns as f64, self.raster.rows as f64);
         let along = |row: f64| (0..self.raster.columns + 2).map(move |column| [column as f64 - 1.0, row]);
         let down = |column: f64| (0..self.raster.rows).map(move |row| [column, row as f64]);
         let all = along(-1.0).chain(along(rows)).chain(down(-1.0)).chain(down(columns));
-        all.map(|position| self.raster.georeference.place(position)).collect()
+        all.map(|position| self.raster.georeference.point(position)).collect()
     }
 }
 
@@ -137,17 +137,17 @@ pub(super) fn see_across_borders(tiles: &mut [Tile]) {
         if tiles[index].is_aligned() {
             continue;
         }
-        let places = tiles[index].ring_places();
-        let mut ring = vec![None; places.len()];
+        let points = tiles[index].ring_points();
+        let mut ring = vec![None; points.len()];
         for (_, other) in tiles.iter().enumerate().filter(|(other, _)| *other != index) {
             let system = tiles[index].raster.georeference.system.as_ref();
             // Both convert to the common system, so to each other.
             let Ok(conversion) = Conversion::between(system, other.raster.georeference.system.as_ref()) else {
                 continue;
             };
-            for (height, place) in ring.iter_mut().zip(&places) {
+            for (height, point) in ring.iter_mut().zip(&points) {
                 if height.is_none() {
-                    *height = other.position_of(*place, &conversion).and_then(|position| other.height(position));
+                    *height = other.position_of(*point, &conversion).and_then(|position| other.height(position));
                 }
             }
         }

@@ -150,7 +150,7 @@ impl Header {
         Ok(())
     }
 
-    /// Columns, rows and place.
+    /// Columns, rows and position.
     fn grid(&self) -> Result<(usize, usize, Georeference), String> {
         let missing = |key: &str| format!("its header has no `{key}`");
         let columns = self.columns.ok_or_else(|| missing("ncols"))?;

@@ -24,7 +24,7 @@ impl RasterField {
     /// another one; its values are taken as they are, also where the file names a unit of heights.
     ///
     /// # Errors
-    /// As [`read_raster`](crate::read_raster), where it names a system from or to which the terrain's places cannot be converted, and where it lies outside the
+    /// As [`read_raster`](crate::read_raster), where it names a system from or to which the terrain's positions cannot be converted, and where it lies outside the
     /// terrain.
     pub fn open(path: impl AsRef<Path>, terrain: &Terrain) -> Result<Self, TerrainError> {
         let path = path.as_ref();
@@ -114,14 +114,14 @@ impl RasterField {
         Some(sum / weights)
     }
 
-    /// Fractional (column, row) of a place in model coordinates.
+    /// Fractional (column, row) of a position in model coordinates.
     fn position(&self, model: [f64; 2]) -> Option<[f64; 2]> {
         let own = self.frame.to_own(model);
-        let place = match &self.other {
+        let own = match &self.other {
             Some(system) => self.frame.own_to(system, own)?,
             None => own,
         };
-        Some(self.raster.georeference.position(place))
+        Some(self.raster.georeference.position(own))
     }
 
     /// The value of the cell in which a fractional (column, row) lies, the raster's sides included.

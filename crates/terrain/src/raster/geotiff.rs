@@ -25,7 +25,7 @@ pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>, kind: V
     }
     check_compression(path, &file, big_endian)?;
     let format = check_bytes(path, &file)?;
-    let mut whole = place(path, &file)?;
+    let mut whole = georeference(path, &file)?;
     let window = match part {
         Some(part) => Window::within(&whole, size, part).ok_or_else(|| outside(path, part, &whole.outline(size)))?,
         None => Window::whole(size),
@@ -106,7 +106,7 @@ pub(super) fn survey(path: &Path) -> Result<Survey, TerrainError> {
     Ok(Survey {
         columns: file.width() as usize,
         rows: file.height() as usize,
-        georeference: place(path, &file)?,
+        georeference: georeference(path, &file)?,
         format: "GeoTIFF",
         samples,
         height_unit_m: height_unit(file.geokeys()),
@@ -131,7 +131,7 @@ fn nowhere(path: &Path) -> TerrainError {
 }
 
 /// Where the whole of a file lies; refuses turned and mirrored rasters.
-pub(super) fn place(path: &Path, file: &GeoTiffFile) -> Result<Georeference, TerrainError> {
+pub(super) fn georeference(path: &Path, file: &GeoTiffFile) -> Result<Georeference, TerrainError> {
     let transform: &GeoTransform = file.transform().ok_or_else(|| nowhere(path))?;
     if transform.skew_x != 0.0 || transform.skew_y != 0.0 || transform.pixel_width < 0.0 {
         let what = "it is turned or mirrored against north; straighten it with `gdalwarp`";

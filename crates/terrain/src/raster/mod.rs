@@ -226,7 +226,7 @@ pub(crate) fn outside(path: &Path, part: &MapBox, outline: &MapBox) -> TerrainEr
     TerrainError::unusable(path, what)
 }
 
-/// Refuses values and places that no model can use.
+/// Refuses values and positions that no model can use.
 fn checked(path: &Path, raster: Raster) -> Result<Raster, TerrainError> {
     let Georeference { corner, cell, .. } = &raster.georeference;
     if !corner.iter().chain(cell).all(|value| value.is_finite()) || cell.iter().any(|size| *size <= 0.0) {

@@ -1,6 +1,6 @@
 //! Aerial photos: GeoTIFF files with colours.
 
-use super::geotiff::{SampleFormat, open, place, refused, south_first};
+use super::geotiff::{SampleFormat, georeference, open, refused, south_first};
 use super::{Window, check_size, geotiff, memory};
 use crate::{Georeference, Terrain, TerrainError};
 use geotiff_reader::GeoTiffFile;
@@ -8,11 +8,11 @@ use proj4rs::Proj;
 use std::path::{Path, PathBuf};
 use tiff_reader::{ColorModel, ExtraSample, TiffSample};
 
-/// An aerial photo with its place on Earth, a GeoTIFF.
+/// An aerial photo with its position on Earth, a GeoTIFF.
 pub struct Photo {
     path: PathBuf,
     file: GeoTiffFile,
-    place: Georeference,
+    georeference: Georeference,
     system: Option<Proj>,
 }
 
@@ -24,10 +24,10 @@ impl Photo {
     pub fn open(path: &Path) -> Result<Self, TerrainError> {
         memory::open(path).map_err(|error| TerrainError::read(path, error))?;
         let file = open(path)?;
-        let place = place(path, &file)?;
+        let georeference = georeference(path, &file)?;
         geotiff::check_bytes(path, &file)?;
-        let system = place.system.as_ref().and_then(|system| system.projection());
-        Ok(Self { path: path.to_owned(), file, place, system })
+        let system = georeference.system.as_ref().and_then(|system| system.projection());
+        Ok(Self { path: path.to_owned(), file, georeference, system })
     }
 
     /// Numbers of columns and rows.
@@ -35,7 +35,7 @@ impl Photo {
         [self.file.width() as usize, self.file.height() as usize]
     }
 
-    /// Column and row at a position of a terrain, m, whole at middles of pixels. Where either has no known place on Earth, their own
+    /// Column and row at a position of a terrain, m, whole at middles of pixels. Where either has no known position on Earth, their own
     /// coordinates are taken for the same. None where the photo's reference system does not reach.
     pub fn pixel(&self, terrain: &Terrain, position: [f64; 2]) -> Option<[f64; 2]> {
         let own = terrain.to_own(position);
@@ -44,7 +44,7 @@ impl Photo {
             Some(system) if frame.is_known() => frame.own_to(system, own)?,
             _ => own,
         };
-        Some(self.place.position(there))
+        Some(self.georeference.position(there))
     }
 
     /// Red, green, blue and opacity of the pixels of a window, row by row from the north.

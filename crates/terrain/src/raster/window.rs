@@ -3,7 +3,7 @@
 use super::Raster;
 use crate::Georeference;
 
-/// Parts of a cell that count as rounding, not as a place.
+/// Parts of a cell that count as rounding, not as a position.
 const ROUNDING: f64 = 1e-4;
 
 /// A rectangle in a raster's own coordinates.
@@ -69,8 +69,8 @@ impl Window {
     }
 
     /// The cells of a raster of `size` columns and rows that share area with `part`; none where none do.
-    pub fn within(place: &Georeference, size: [usize; 2], part: &MapBox) -> Option<Self> {
-        let ([x, y], [dx, dy]) = (place.corner, place.cell);
+    pub fn within(georeference: &Georeference, size: [usize; 2], part: &MapBox) -> Option<Self> {
+        let ([x, y], [dx, dy]) = (georeference.corner, georeference.cell);
         let from = [(part.west - x) / dx, (y - part.north) / dy].map(|cells| (cells + ROUNDING).floor().max(0.0));
         let to = [(part.east - x) / dx, (y - part.south) / dy].map(|cells| (cells - ROUNDING).ceil());
         let to = [0, 1].map(|axis| to[axis].min(size[axis] as f64));
@@ -85,7 +85,7 @@ impl Window {
 impl Georeference {
     /// The same grid from a window's first cell on.
     pub fn from_cell(&self, [column, row]: [usize; 2]) -> Self {
-        let corner = self.place([column as f64 - 0.5, row as f64 - 0.5]);
+        let corner = self.point([column as f64 - 0.5, row as f64 - 0.5]);
         Self { corner, ..self.clone() }
     }
 
@@ -119,12 +119,12 @@ impl Raster {
 mod tests {
     use super::*;
 
-    fn place() -> Georeference {
+    fn georeference() -> Georeference {
         Georeference::plain([100.0, 500.0], [10.0, 20.0])
     }
 
     fn window(sides: [f64; 4]) -> Option<Window> {
-        Window::within(&place(), [8, 6], &MapBox::new(sides).unwrap())
+        Window::within(&georeference(), [8, 6], &MapBox::new(sides).unwrap())
     }
 
     #[test]
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn a_part_lies_where_it_lay() {
         let values = (0..48).map(f64::from).collect();
-        let raster = Raster { columns: 8, rows: 6, values, georeference: place(), warnings: Vec::new() };
+        let raster = Raster { columns: 8, rows: 6, values, georeference: georeference(), warnings: Vec::new() };
         let part = raster.cropped(&MapBox::new([110.0, 440.0, 130.0, 480.0]).unwrap()).unwrap();
         assert_eq!(part.values, [9.0, 10.0, 17.0, 18.0]);
         assert_eq!(part.georeference.corner, [110.0, 480.0]);

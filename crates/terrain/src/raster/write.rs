@@ -11,7 +11,7 @@ use std::path::Path;
 /// Side of a tile in the file, cells.
 const TILE: u32 = 256;
 
-/// Writes a map as cloud-optimised GeoTIFF: 32-bit floating point, Deflate, tiled, with the place and the reference system of `grid`.
+/// Writes a map as cloud-optimised GeoTIFF: 32-bit floating point, Deflate, tiled, with the position and the reference system of `grid`.
 /// `values` are `rows * columns`, row by row from the north-west; those that are not a number are written as `no_data`,
 /// which the file names. The file appears whole or not at all.
 ///
@@ -43,24 +43,24 @@ pub fn write_raster_exactly(path: impl AsRef<Path>, raster: &Raster) -> Result<(
 
 fn write(
     path: &Path,
-    place: &Georeference,
+    georeference: &Georeference,
     size: [usize; 2],
     values: &[f32],
     no_data: f32,
 ) -> Result<(), TerrainError> {
     let filled: Vec<f32> = values.iter().map(|value| if value.is_nan() { no_data } else { *value }).collect();
-    write_samples(path, place, size, &filled, &no_data.to_string())
+    write_samples(path, georeference, size, &filled, &no_data.to_string())
 }
 
 fn write_samples<T: NumericSample>(
     path: &Path,
-    place: &Georeference,
+    georeference: &Georeference,
     [columns, rows]: [usize; 2],
     values: &[T],
     no_data: &str,
 ) -> Result<(), TerrainError> {
     let array = ArrayView2::from_shape((rows, columns), values).map_err(|error| TerrainError::write(path, error))?;
-    let builder = builder(place, [columns, rows], no_data);
+    let builder = builder(georeference, [columns, rows], no_data);
     let mut file = WholeFile::create(path).map_err(|error| TerrainError::write(path, error))?;
     let optimised =
         CogBuilder::new(builder).overview_levels(overviews(columns.max(rows))).resampling(Resampling::NearestNeighbor);
@@ -77,13 +77,17 @@ fn overviews(side: usize) -> Vec<u32> {
 }
 
 /// What the file says about itself.
-fn builder(place: &Georeference, [columns, rows]: [usize; 2], no_data: &str) -> GeoTiffBuilder {
-    let transform =
-        GeoTransform::from_origin_and_pixel_size(place.corner[0], place.corner[1], place.cell[0], -place.cell[1]);
+fn builder(georeference: &Georeference, [columns, rows]: [usize; 2], no_data: &str) -> GeoTiffBuilder {
+    let transform = GeoTransform::from_origin_and_pixel_size(
+        georeference.corner[0],
+        georeference.corner[1],
+        georeference.cell[0],
+        -georeference.cell[1],
+    );
     let start = GeoTiffBuilder::new(columns as u32, rows as u32);
-    let keys = place.keys.keys.iter().fold(start, |builder, key| builder.geokey(key.id, key.value.clone()));
+    let keys = georeference.keys.keys.iter().fold(start, |builder, key| builder.geokey(key.id, key.value.clone()));
     // Without a reference system no key at all is written: a lone raster type reads as an unnamed system.
-    let keys = if place.keys.keys.is_empty() { keys } else { keys.raster_type(RasterType::PixelIsArea) };
+    let keys = if georeference.keys.keys.is_empty() { keys } else { keys.raster_type(RasterType::PixelIsArea) };
     keys.transform(transform)
         .nodata(no_data)
         .compression(Compression::Deflate)

@@ -13,11 +13,11 @@
 use super::blocks::{Node, Nodes, SIDE, STRIDE};
 use super::{Surface, along_lanes, hermite, hermite_lanes, patch, sides_of, weighted};
 use crate::Bounds;
-use crate::mean::Outline;
+use crate::outline::Outline;
 use corpuscle_simd::{LANES, Lanes, LanesExt, Level, Simd, SimdBase, dispatch};
 use std::ops::Range;
 
-/// Places, as shares of the length, and weights of the four-point Gauss-Legendre rule (Abramowitz and Stegun, Handbook
+/// Points, as shares of the length, and weights of the four-point Gauss-Legendre rule (Abramowitz and Stegun, Handbook
 /// of Mathematical Functions, table 25.4).
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
@@ -40,7 +40,7 @@ const MIN_LENGTH: f64 = 1e-5;
 const MIN_WIDTH: f64 = 1e-8;
 
 impl Surface {
-    /// Mean height over a convex polygon, m; outside `bounds` the ground goes on with the height of the nearest place
+    /// Mean height over a convex polygon, m; outside `bounds` the ground goes on with the height of the nearest point
     /// inside. `None` for a polygon so small or thin that a quotient of integral and area is inexact.
     pub(crate) fn mean_over(&self, outline: &Outline, bounds: Bounds) -> Option<f64> {
         let region = Region::around(self, outline, bounds);
@@ -141,7 +141,7 @@ struct Region<'a> {
     first: [usize; 2],
     /// Position of the first patch from the surface's corner.
     shift: [f64; 2],
-    /// South-west and north-east corner of the bounds, outside which the height is that of the nearest place inside.
+    /// South-west and north-east corner of the bounds, outside which the height is that of the nearest point inside.
     low: [f64; 2],
     high: [f64; 2],
     /// South-west and north-east corner of the polygon's bounding rectangle, which may reach outside the bounds.
@@ -221,7 +221,7 @@ impl<'a> Region<'a> {
         [0, 1].map(|axis| position[axis].max(self.low[axis]).min(self.high[axis]))
     }
 
-    /// Column and row of the patch that holds the place inside the bounds nearest to a position.
+    /// Column and row of the patch that holds the point inside the bounds nearest to a position.
     #[inline]
     fn patch_at(&self, position: [f64; 2]) -> [usize; 2] {
         let position = self.nearest(position);
@@ -393,8 +393,8 @@ struct Parts<S: Simd, const INSIDE: bool> {
 impl<S: Simd, const INSIDE: bool> Parts<S, INSIDE> {
     #[inline(always)]
     fn new(simd: S) -> Self {
-        let (sum, index, place) = (Lanes::splat(simd, 0.0), [0; LANES], [[0.0; LANES]; 2]);
-        Self { simd, sum, jumps: 0.0, count: 0, column: index, row: index, from: place, length: place }
+        let (sum, index, point) = (Lanes::splat(simd, 0.0), [0; LANES], [[0.0; LANES]; 2]);
+        Self { simd, sum, jumps: 0.0, count: 0, column: index, row: index, from: point, length: point }
     }
 
     #[inline(always)]

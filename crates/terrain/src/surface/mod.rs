@@ -24,7 +24,7 @@ pub struct GroundPatches {
     pub nodes: Vec<[f32; 4]>,
     /// Nodes in a row, and rows.
     pub size: [usize; 2],
-    /// Place of the first node in model coordinates, m.
+    /// Position of the first node in model coordinates, m.
     pub corner: [f64; 2],
     /// Nodes per metre along x and y.
     pub per_metre: [f64; 2],
@@ -40,7 +40,7 @@ const NODES_A_CELL: f64 = 4.0;
 const MOST_NODES: f64 = 4096.0;
 
 impl GroundPatches {
-    /// Patches through a formula, which gives height and slope at a place, over `bounds`.
+    /// Patches through a formula, which gives height and slope at a position, over `bounds`.
     pub(crate) fn of_function(
         bounds: Bounds,
         cell: [f64; 2],
@@ -86,7 +86,7 @@ pub(crate) struct Surface {
     blocks_in_row: usize,
     /// Patches in each direction.
     patches: [usize; 2],
-    /// Place of the south-west node of the ring.
+    /// Position of the south-west node of the ring.
     corner: [f64; 2],
     /// Nodes per metre.
     per_metre: [f64; 2],
@@ -183,20 +183,20 @@ impl Surface {
     /// Height and slope `[dz/dx, dz/dy]`; the nearest edge's outside the ring. Never panics.
     #[inline]
     pub(crate) fn height_and_slope(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
-        let ([column, row], place) = self.patch_at(x, y);
+        let ([column, row], position) = self.patch_at(x, y);
         let (block, south) = self.block(column, row);
         let (south, north) = (pair(&*block.nodes, south), pair(&*block.nodes, south + STRIDE));
-        self.between(south, north, place)
+        self.between(south, north, position)
     }
 
     /// The height that [`Self::height_and_slope`] gives, without making a block for it.
     pub(crate) fn height_once(&self, x: f64, y: f64) -> f64 {
-        let ([column, row], place) = self.patch_at(x, y);
+        let ([column, row], position) = self.patch_at(x, y);
         if self.blocks[row / SIDE * self.blocks_in_row + column / SIDE].get().is_some() {
             return self.height_and_slope(x, y).0;
         }
         let nodes = self.heights.nodes([column, row], [2, 2]);
-        self.between(pair(&nodes, 0), pair(&nodes, 2), place).0
+        self.between(pair(&nodes, 0), pair(&nodes, 2), position).0
     }
 
     /// The heights that [`Self::height_and_slope`] gives at all of `x`, of which each goes with all of `y`; both ascend. Row by row,
@@ -216,7 +216,7 @@ impl Surface {
         heights
     }
 
-    /// Heights at rows and columns of places, all in one row of blocks.
+    /// Heights at rows and columns of positions, all in one row of blocks.
     fn fill_band(&self, columns: &[(usize, f64)], rows: &[(usize, f64)], band: &mut [f32]) {
         let mut first = 0;
         for part in columns.chunk_by(|a, b| a.0 / SIDE == b.0 / SIDE) {
@@ -254,7 +254,7 @@ impl Surface {
         Some(lowest - ROUNDING * lowest.abs().max(1.0))
     }
 
-    /// Column and row of the patch that holds a place, and where in it.
+    /// Column and row of the patch that holds a position, and where in it.
     #[inline(always)]
     fn patch_at(&self, x: f64, y: f64) -> ([usize; 2], [f64; 2]) {
         let ((column, u), (row, v)) = (self.column_at(x), self.row_at(y));
@@ -288,7 +288,7 @@ impl Surface {
         (height, [slope_x * self.per_metre[0], slope_y * self.per_metre[1]])
     }
 
-    /// [`Self::height_and_slope`] at [`LANES`] places at once, to the same bits: height, dz/dx, dz/dy.
+    /// [`Self::height_and_slope`] at [`LANES`] positions at once, to the same bits: height, dz/dx, dz/dy.
     #[inline(always)]
     pub(crate) fn heights_and_slopes<S: Simd>(&self, simd: S, x: Lanes<S>, y: Lanes<S>) -> [Lanes<S>; 3] {
         let (columns, u) = patches(simd, (x - self.corner[0]) * self.per_metre[0], self.patches[0]);
@@ -350,8 +350,8 @@ fn side_of<S: Simd>(simd: S, nodes: [&Nodes; LANES], west: [usize; LANES]) -> [L
 #[inline(always)]
 fn patches<S: Simd>(simd: S, position: Lanes<S>, patches: usize) -> ([usize; LANES], Lanes<S>) {
     let position = position.max(0.0).min(patches as f64);
-    let places: [f64; LANES] = position.into();
-    let index = places.map(|place| (place as usize).min(patches - 1));
+    let values: [f64; LANES] = position.into();
+    let index = values.map(|value| (value as usize).min(patches - 1));
     (index, position - Lanes::from_fn(simd, |lane| index[lane] as f64))
 }
 
@@ -396,7 +396,7 @@ fn along(weights: &[f64; 4], west: &Node, east: &Node) -> [f64; 2] {
     ]
 }
 
-/// The patch in which a grid coordinate lies and the place in it, 0 to 1; the outermost patches' outer sides beyond.
+/// The patch in which a grid coordinate lies and the position in it, 0 to 1; the outermost patches' outer sides beyond.
 #[inline]
 fn patch(position: f64, patches: usize) -> (usize, f64) {
     let position = position.max(0.0).min(patches as f64);
@@ -482,8 +482,8 @@ mod tests {
     fn one_look_keeps_nothing_and_gives_the_same() {
         let hills = |x: f64, y: f64| 5.0 * (0.3 * x).sin() + (0.2 * y).cos();
         let [surface, other] = [surface(150, 70, hills), surface(150, 70, hills)];
-        for place in 0..500_u32 {
-            let (x, y) = (90.0 + 0.63 * f64::from(place), -40.0 + 0.73 * f64::from(place * 7 % 500));
+        for number in 0..500_u32 {
+            let (x, y) = (90.0 + 0.63 * f64::from(number), -40.0 + 0.73 * f64::from(number * 7 % 500));
             assert_eq!(surface.height_once(x, y).to_bits(), other.height_and_slope(x, y).0.to_bits(), "{x} {y}");
         }
         assert!(surface.blocks.iter().all(|block| block.get().is_none()));
@@ -506,7 +506,7 @@ mod tests {
     }
 
     proptest! {
-        /// No place of a rectangle is below what is said to be lowest there.
+        /// No point of a rectangle is below what is said to be lowest there.
         #[test]
         fn nothing_lies_below_the_lowest(
             heights in prop::collection::vec(-100.0..100.0_f64, 36),

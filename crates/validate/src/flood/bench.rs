@@ -6,7 +6,7 @@ use crate::{Bench, BenchOptions, Rate};
 use corpuscle_flood::{Filling, FloodModel, InitialWater, SphSweFlood, StartWater, VoronoiFlood};
 use corpuscle_model::ModelError;
 use corpuscle_processes::Processes;
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning, Scheme};
+use corpuscle_scene::{Edge, Edges, Flood, Manning, Scheme};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -129,7 +129,7 @@ fn voronoi(particles: usize, waves: bool) -> Result<VoronoiFlood, ModelError> {
 pub(super) fn filled(
     particles: usize,
     height: f64,
-    change: impl FnOnce(&mut Settings),
+    change: impl FnOnce(&mut Flood),
 ) -> Result<VoronoiFlood, ModelError> {
     filled_on(&Processes::alone(), particles, height, change)
 }
@@ -139,9 +139,9 @@ fn filled_on(
     processes: &Processes,
     particles: usize,
     height: f64,
-    change: impl FnOnce(&mut Settings),
+    change: impl FnOnce(&mut Flood),
 ) -> Result<VoronoiFlood, ModelError> {
-    let mut settings = Settings { manning: Manning::Number(0.03), ..basin(Scheme::Voronoi) };
+    let mut settings = Flood { manning: Manning::Number(0.03), ..basin(Scheme::Voronoi) };
     change(&mut settings);
     let water = StartWater {
         filling: Filling::Level(Box::new(move |x, _| 1.0 + height * (0.05 * x).sin())),
@@ -162,8 +162,8 @@ fn ground(particles: usize) -> Arc<Terrain> {
 }
 
 /// Water between walls with particles 1 m apart, without friction. Its maps are not used.
-fn basin(scheme: Scheme) -> Settings {
-    Settings {
+fn basin(scheme: Scheme) -> Flood {
+    Flood {
         scheme,
         spacing_m: Some(1.0),
         spacing_depth_m: Some(1.0),
@@ -171,7 +171,7 @@ fn basin(scheme: Scheme) -> Settings {
         manning: Manning::Number(0.0),
         map_every_s: Some(5e3),
         edges: Edges { west: Edge::Wall, east: Edge::Wall, south: Edge::Wall, north: Edge::Wall },
-        ..Settings::default()
+        ..Flood::default()
     }
 }
 

@@ -12,7 +12,7 @@ mod voronoi;
 use crate::Case;
 use crate::device::{is_reduced, rows, sized};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Scene, builtin};
+use corpuscle_scene::{Edge, Edges, Flood, Scene, builtin};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -64,7 +64,7 @@ fn strip(ends: &Edge) -> Edges {
 
 /// A built-in scene of scheme sph-swe with changes of it, and its ground; at the reduced size particles are farther apart, and have as many
 /// neighbours.
-fn built_in(name: &str, changes: &[(&str, &str)]) -> Result<(Scene, Settings, Arc<Terrain>), ModelError> {
+fn built_in(name: &str, changes: &[(&str, &str)]) -> Result<(Scene, Flood, Arc<Terrain>), ModelError> {
     let setup = |error: &dyn std::fmt::Display| ModelError::Setup(error.to_string());
     let text = builtin(name).ok_or_else(|| setup(&format!("no built-in scene {name}")))?.text;
     let mut all: Vec<_> = changes.iter().map(|(path, value)| ((*path).to_owned(), (*value).to_owned())).collect();

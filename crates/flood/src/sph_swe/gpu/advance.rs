@@ -3,7 +3,7 @@
 use super::OnGpu;
 use super::batch::{BatchRequest, BatchResult};
 use super::shared::{Grid, SpawnRequest, Status};
-use crate::sph_swe::measured::Reading;
+use crate::sph_swe::gauges::Reading;
 use crate::sph_swe::step::CELL_OVER_H;
 use corpuscle_gpu::{BATCH_START, Gpu, GpuError, Halt, MOST_STEPS, from_halves, from_pair, read, to_pair};
 

@@ -17,12 +17,12 @@ pub(crate) struct BatchRequest<'a> {
     pub most: u64,
     /// The first step that ends then or after is the last: the host samples the maps.
     pub host_sample: f64,
-    /// Times at which the GPU samples the maps itself, [`MAX_MAP_TIMES`](super::maps::MAX_MAP_TIMES) at most, and when it last did.
+    /// Times at which the GPU samples the maps itself, [`MAX_MAP_TIMES`](crate::sph_swe::maps::on_gpu::MAX_MAP_TIMES) at most, and when it last did.
     pub map_times: &'a [f64],
     pub last_sample: f64,
     /// Particles that sources release, the earliest first.
     pub spawn_requests: &'a [SpawnRequest],
-    /// When rows of gauges are due: [`MOST_ROWS`](super::gauges::MOST_ROWS) at most.
+    /// When rows of gauges are due: [`MOST_ROWS`](crate::sph_swe::gauges::on_gpu::MOST_ROWS) at most.
     pub due: &'a [f64],
 }
 

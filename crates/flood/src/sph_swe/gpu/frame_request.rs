@@ -1,6 +1,6 @@
 //! Frames whose particles stay in buffers of the GPU that takes the steps.
 
-use super::measured::Observers;
+use super::observers::Observers;
 use crate::sph_swe::SphSweFlood;
 use corpuscle_gpu::GpuError;
 use corpuscle_model::{Frame, Glance};

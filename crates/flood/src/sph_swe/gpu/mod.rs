@@ -6,27 +6,22 @@
 mod advance;
 mod batch;
 mod frame_request;
-mod gauges;
-mod ground;
-mod maps;
-mod measured;
 mod model;
-mod obstacles;
+mod observers;
 mod seen;
-mod shared;
+pub(super) mod shared;
 mod state;
-mod tasks;
+pub(super) mod tasks;
 #[cfg(test)]
 mod tests;
-mod upload;
-mod zones;
+pub(super) mod upload;
 
-pub(super) use measured::Observers;
 pub(super) use model::failed;
+pub(super) use observers::Observers;
 
+use crate::sph_swe::obstacles::upload::GpuObstacles;
 use corpuscle_gpu::{Batches, Buffers, Gpu, GpuError, MOST_GROUPS, SeenParticles, THREADS, wgpu};
 use corpuscle_terrain::Bounds;
-use obstacles::GpuObstacles;
 use shared::{Parameters, Status};
 use state::ObstacleTotals;
 use tasks::Tasks;
@@ -37,7 +32,7 @@ const CELLS_A_PARTICLE: usize = 4;
 const FEWEST_CELLS: usize = 65_536;
 
 /// More cells are no work for one thread each.
-const MOST_CELLS: usize = (MOST_GROUPS * THREADS) as usize;
+pub(super) const MOST_CELLS: usize = (MOST_GROUPS * THREADS) as usize;
 
 /// Spawn requests that are uploaded to the GPU at once, at most.
 const MAX_SPAWN_REQUESTS: usize = 16_384;
@@ -46,16 +41,16 @@ const MAX_SPAWN_REQUESTS: usize = 16_384;
 #[derive(Debug)]
 pub(super) struct OnGpu {
     batches: Batches,
-    tasks: Tasks,
-    obstacles: GpuObstacles,
+    pub(super) tasks: Tasks,
+    pub(super) obstacles: GpuObstacles,
     /// The zone of each source.
     zones: Vec<u32>,
     /// The particles for drawing, once they are drawn.
     seen: SeenParticles,
     parameters: Parameters,
-    origin: Origin,
+    pub(super) origin: Origin,
     bounds: Bounds,
-    status: Status,
+    pub(super) status: Status,
     /// Particles, drops and cells that there is room for.
     room: usize,
     room_in_air: usize,
@@ -63,7 +58,7 @@ pub(super) struct OnGpu {
     /// Steps in all: the cells are laid out at the same steps however often the host reads the state.
     steps: u64,
     /// What the device's times count from, s.
-    clock_began: f64,
+    pub(super) clock_began: f64,
     /// Whether the GPU's state is ahead of the host's.
     ahead: bool,
     /// Totals of the obstacles when the water was uploaded.

@@ -2,13 +2,13 @@
 
 use super::batch::{BatchRequest, BatchResult, SpawnRequest};
 use super::frame_request::FrameRequest;
-use super::gauges::MOST_ROWS;
-use super::maps::MAX_MAP_TIMES;
-use super::measured::Observers;
+use super::observers::Observers;
 use super::state::Water;
 use super::upload::GpuInputs;
 use super::{MAX_SPAWN_REQUESTS, OnGpu};
-use crate::sph_swe::measured::Reading;
+use crate::sph_swe::gauges::Reading;
+use crate::sph_swe::gauges::on_gpu::MOST_ROWS;
+use crate::sph_swe::maps::on_gpu::MAX_MAP_TIMES;
 use crate::sph_swe::particle::Particle;
 use crate::sph_swe::step::CELL_OVER_H;
 use crate::sph_swe::{DENSITY, SphSweFlood, State};

@@ -5,7 +5,7 @@ use super::shared::{Memory, Shown};
 use super::tasks::{Shader, task};
 use corpuscle_gpu::{DeviceParticles, GpuError, Seen};
 
-pub(super) const SHADER: Shader = ("sph_seen", include_str!("../sph_seen.wgsl"));
+pub(super) const SHADER: Shader = ("sph_seen", include_str!("sph_seen.wgsl"));
 
 impl OnGpu {
     /// The particles as they are seen `since` s after the last step, `spacing` m apart, those in the air `drop_spacing` m, on the device.

@@ -40,19 +40,19 @@ corpuscle_gpu::declare! {
         /// Most of a kernel that walls are taken to cover.
         pub const MOST_COVERED: f32 = super::super::obstacles::MOST_COVERED as f32;
         /// Distance beyond an edge at which particles are removed, in smoothing lengths.
-        pub const BEYOND: f32 = super::super::exchange::BEYOND as f32;
+        pub const BEYOND: f32 = super::super::boundaries::outflow::BEYOND as f32;
         /// Lowest Froude number of a particle that has left.
-        pub const SLOWEST_LEAVING: f32 = super::super::exchange::SLOWEST_LEAVING as f32;
+        pub const SLOWEST_LEAVING: f32 = super::super::boundaries::outflow::SLOWEST_LEAVING as f32;
         /// How far from an edge a particle has a ghost particle, in reaches.
-        pub const GHOST_MARGIN: f32 = super::super::arrangement::GHOST_MARGIN as f32;
+        pub const GHOST_MARGIN: f32 = super::super::neighbours::GHOST_MARGIN as f32;
         /// Support of the sampling kernel over that of the scheme's.
         pub const SAMPLED: f32 = super::super::SAMPLED as f32;
         /// Share of a position's surroundings that water must cover for the position to be wet.
-        pub const COVERED: f32 = super::super::sampler::COVERED as f32;
+        pub const COVERED: f32 = super::super::sampling::COVERED as f32;
         /// Radius of a search for the water at a position over the reach of the particles there.
-        pub const SEARCH_MARGIN: f32 = super::super::sampler::SEARCH_MARGIN as f32;
+        pub const SEARCH_MARGIN: f32 = super::super::sampling::SEARCH_MARGIN as f32;
         /// Largest depth at a position over that of the deepest particle near it.
-        pub const DEEPER: f32 = super::super::sampler::DEEPER as f32;
+        pub const DEEPER: f32 = super::super::sampling::DEEPER as f32;
         /// Threads of a group that samples positions of gauges.
         pub const GAUGE_GROUP: u32 = 64;
         /// Threads of the group that spawns particles: more than [`SPAWN_CANDIDATES`] would only wait.
@@ -64,7 +64,7 @@ corpuscle_gpu::declare! {
         /// The word with the number of obstacles.
         pub const OBSTACLE_COUNT: u32 = 2;
         /// The first word of the positions.
-        pub const PLACES: u32 = 3;
+        pub const POSITIONS: u32 = 3;
         /// The word of a row with the water in all, m3.
         pub const STORED: u32 = 4;
         /// The word with how long after the last step it is due, s.
@@ -74,7 +74,7 @@ corpuscle_gpu::declare! {
         /// Words of an obstacle: force, m4/s2, impulse along each axis as a pair, m4/s, and knocks.
         pub const OF_OBSTACLE: u32 = 8;
         /// Words of a position: depth, m, and velocity, m/s.
-        pub const OF_PLACE: u32 = 3;
+        pub const OF_POSITION: u32 = 3;
     }
     structs {
         /// Square cells; empty where there are no columns.
@@ -222,7 +222,7 @@ corpuscle_gpu::declare! {
             /// Rows that are due in it.
             pub rows_due: u32,
             /// Positions in each row.
-            pub gauge_places: u32,
+            pub gauge_positions: u32,
             /// Sample times of the maps uploaded.
             pub map_times_uploaded: u32,
             /// Number of them taken.
@@ -238,7 +238,7 @@ corpuscle_gpu::declare! {
         /// A particle as it lies in memory, sixteen bytes at a time.
         pub struct Packed {
             /// m and m/s.
-            pub place_and_velocity: [f32; 4],
+            pub position_and_velocity: [f32; 4],
             /// m/s2, m3 and m.
             pub acceleration_volume_depth: [f32; 4],
             /// Smoothing length now and for the next step, and height of the ground, m.
@@ -250,7 +250,7 @@ corpuscle_gpu::declare! {
         /// What the passes read of a particle beside others.
         pub struct Column {
             /// m.
-            pub place: [f32; 2],
+            pub position: [f32; 2],
             /// m/s.
             pub velocity: [f32; 2],
             /// Area that it stands for, mass over density, m2.
@@ -302,7 +302,7 @@ corpuscle_gpu::declare! {
         /// Water in the air.
         pub struct Drop {
             /// m.
-            pub place: [f32; 2],
+            pub position: [f32; 2],
             /// m/s.
             pub velocity: [f32; 2],
             /// Height, m.
@@ -322,7 +322,7 @@ corpuscle_gpu::declare! {
         /// A boundary particle of an obstacle.
         pub struct WallSite {
             /// m.
-            pub place: [f32; 2],
+            pub position: [f32; 2],
             /// Area of the obstacle that it stands for, m2.
             pub area: f32,
             /// Its area as the forces have it (Akinci et al. 2012, equation 4), m2.
@@ -350,7 +350,7 @@ corpuscle_gpu::declare! {
         /// A cell of the maps.
         pub struct MapCell {
             /// Its centre, m.
-            pub place: [f32; 2],
+            pub position: [f32; 2],
             /// Largest depth, m.
             pub max_depth: f32,
             /// Largest speed, m/s.
@@ -399,7 +399,7 @@ corpuscle_gpu::declare! {
         /// Particles in each cell.
         storage counts: [AtomicU32],
         /// Cell of each particle, and its index within the cell.
-        storage places: [[u32; 2]],
+        storage slots: [[u32; 2]],
         /// Sort key of each particle within its cell.
         storage keys: [u32],
         /// The first particle of each cell.

@@ -3,7 +3,7 @@
 
 // A column of water; `outside` is 0 for one inside, or the side over which it has left, from 1.
 struct Particle {
-    place: vec2f,
+    position: vec2f,
     velocity: vec2f,
     acceleration: vec2f,
     volume: f32,
@@ -16,7 +16,7 @@ struct Particle {
 }
 
 fn unpacked(packed: Packed) -> Particle {
-    let a = packed.place_and_velocity;
+    let a = packed.position_and_velocity;
     let b = packed.acceleration_volume_depth;
     let c = packed.lengths_and_ground;
     return Particle(a.xy, a.zw, b.xy, b.z, b.w, c.x, c.y, c.z, packed.identity.x, packed.identity.y);
@@ -24,7 +24,7 @@ fn unpacked(packed: Packed) -> Particle {
 
 fn packed(particle: Particle) -> Packed {
     return Packed(
-        vec4f(particle.place, particle.velocity),
+        vec4f(particle.position, particle.velocity),
         vec4f(particle.acceleration, particle.volume, particle.depth),
         vec4f(particle.h, particle.next_h, particle.ground, 0.0),
         vec4u(particle.id, particle.outside, 0u, 0u),

@@ -88,7 +88,7 @@ fn order_gauges() {
     status.rows_due = rows_due;
     order_groups(GAUGES, select(0u, groups_of_water(status.particles), rows_due > 0u), 1u);
     order_groups(GAUGES + 1u, select(0u, 1u, rows_due > 0u), rows_due);
-    order_groups(GAUGES + 2u, select(0u, (status.gauge_places + GAUGE_GROUP - 1u) / GAUGE_GROUP, rows_due > 0u), rows_due);
+    order_groups(GAUGES + 2u, select(0u, (status.gauge_positions + GAUGE_GROUP - 1u) / GAUGE_GROUP, rows_due > 0u), rows_due);
 }
 
 // Orders a sample of the maps where the step has passed the time of one.

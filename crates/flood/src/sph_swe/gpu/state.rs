@@ -1,9 +1,10 @@
 //! Upload of the state to the GPU, and its download on demand.
 
 use super::super::maps::Maps;
+use super::OnGpu;
 use super::shared::{Drop, FALLS, GONE, KNOCK, OnObstacle, Packed, Status};
-use super::{OnGpu, ground};
 use crate::sph_swe::falling::Falling;
+use crate::sph_swe::ground::upload::complete;
 use crate::sph_swe::particle::Particle;
 use corpuscle_gpu::{GpuError, from_pair, read};
 use corpuscle_terrain::Terrain;
@@ -55,7 +56,7 @@ impl OnGpu {
         self.upload_maps(water.maps);
         self.totals_before = ObstacleTotals { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
         let corners = |pick: fn(f32, f32) -> f32, none: f32| {
-            [0, 1].map(|axis| sent.iter().map(|particle| particle.place_and_velocity[axis]).fold(none, pick))
+            [0, 1].map(|axis| sent.iter().map(|particle| particle.position_and_velocity[axis]).fold(none, pick))
         };
         let sum_of_h: f64 = particles.iter().map(|particle| particle.next_h).sum();
         self.status = Status {
@@ -82,7 +83,7 @@ impl OnGpu {
         let sent: Vec<Packed> = read(self.gpu(), &self.tasks.memory.particles, self.status.particles as usize).await?;
         particles.clear();
         particles.extend(sent.iter().map(|particle| self.origin.unpacked(particle)));
-        ground::complete(particles, terrain);
+        complete(particles, terrain);
         self.ahead = false;
         Ok(())
     }
@@ -97,7 +98,7 @@ impl OnGpu {
     }
 
     /// The sum over time of the force on an obstacle along an axis, of which the GPU has counted `sum` and `knocks` since the upload of the water, m4/s.
-    pub(super) fn impulse(&self, number: usize, axis: usize, sum: f64, knocks: i32) -> f64 {
+    pub(in crate::sph_swe) fn impulse(&self, number: usize, axis: usize, sum: f64, knocks: i32) -> f64 {
         let knock = f64::from(KNOCK) * f64::from(self.parameters.new_volume);
         self.totals_before.impulses[number][axis] + sum + knock * f64::from(knocks)
     }

@@ -1,53 +1,54 @@
 //! The passes of a step, and their order.
 
-use super::gauges::Gauges;
-use super::maps::GpuMaps;
 use super::shared::{Memory, Status};
 use super::upload::GpuInputs;
+use crate::sph_swe::gauges::on_gpu::Gauges;
+use crate::sph_swe::maps::on_gpu::GpuMaps;
 use corpuscle_gpu::{
     COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, Kernel as GpuKernel, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots,
     THREADS, Task, sort_blocks, wgpu,
 };
-use corpuscle_sph::kernel::{KERNEL_PIECE, Kernel};
+use corpuscle_sph::kernel::{CUBIC_SPLINE_SHAPE, KERNEL_PIECE, Kernel};
 
 /// Pieces that the shaders import, but for the smoothing kernel.
 const LIBRARY: ShaderLibrary<'_> = &[
     SUMS_BEFORE,
     COMPENSATED_SUMS,
     GROUP_REDUCTION,
+    CUBIC_SPLINE_SHAPE,
     ("sph_common", include_str!("sph_common.wgsl")),
-    ("sph_ground", include_str!("sph_ground.wgsl")),
+    ("sph_ground", include_str!("../ground/sph_ground.wgsl")),
     ("friction_rate", include_str!("../../friction/friction_rate.wgsl")),
-    ("sph_friction", include_str!("sph_friction.wgsl")),
-    ("sph_rows", include_str!("sph_rows.wgsl")),
-    ("sph_spline", include_str!("../sph_spline.wgsl")),
-    ("sph_neighbours", include_str!("../sph_neighbours.wgsl")),
+    ("sph_friction", include_str!("../friction/sph_friction.wgsl")),
+    ("sph_rows", include_str!("../gauges/sph_rows.wgsl")),
+    ("sph_spline", include_str!("../sampling/sph_spline.wgsl")),
+    ("sph_neighbours", include_str!("../neighbours/sph_neighbours.wgsl")),
     ("sph_outlines", include_str!("../obstacles/sph_outlines.wgsl")),
-    ("sph_water", include_str!("../sph_water.wgsl")),
+    ("sph_water", include_str!("../sampling/sph_water.wgsl")),
 ];
 
 /// These pieces and the smoothing kernel.
 fn pieces_with(kernel: &str) -> Vec<(&str, &str)> {
-    let kernels = [(KERNEL_PIECE, kernel), ("sph_kernels", include_str!("../sph_kernels.wgsl"))];
+    let kernels = [(KERNEL_PIECE, kernel), ("sph_kernels", include_str!("sph_kernels.wgsl"))];
     LIBRARY.iter().copied().chain(kernels).collect()
 }
 
 /// Name and text of a shader.
-pub(super) type Shader = (&'static str, &'static str);
+pub(in crate::sph_swe) type Shader = (&'static str, &'static str);
 
-const DRIFT: Shader = ("sph_drift", include_str!("../sph_drift.wgsl"));
-const SPAWN: Shader = ("sph_spawn", include_str!("../sph_spawn.wgsl"));
-const LAND: Shader = ("sph_land", include_str!("../sph_land.wgsl"));
-const LANDED: Shader = ("sph_landed", include_str!("../sph_landed.wgsl"));
-const LEAVE: Shader = ("sph_leave", include_str!("../sph_leave.wgsl"));
-const REORDER: Shader = ("sph_reorder", include_str!("../sph_reorder.wgsl"));
-const REACH_OWN: Shader = ("sph_reach_own", include_str!("../sph_reach_own.wgsl"));
-const REACH_ROWS: Shader = ("sph_reach_rows", include_str!("../sph_reach_rows.wgsl"));
-const REACH: Shader = ("sph_reach", include_str!("../sph_reach.wgsl"));
-const DENSITY: Shader = ("sph_density", include_str!("../sph_density.wgsl"));
-const PUSH: Shader = ("sph_push", include_str!("../sph_push.wgsl"));
+const DRIFT: Shader = ("sph_drift", include_str!("../motion/sph_drift.wgsl"));
+const SPAWN: Shader = ("sph_spawn", include_str!("../inflow/sph_spawn.wgsl"));
+const LAND: Shader = ("sph_land", include_str!("../falling/sph_land.wgsl"));
+const LANDED: Shader = ("sph_landed", include_str!("../falling/sph_landed.wgsl"));
+const LEAVE: Shader = ("sph_leave", include_str!("../boundaries/sph_leave.wgsl"));
+const REORDER: Shader = ("sph_reorder", include_str!("../neighbours/sph_reorder.wgsl"));
+const REACH_OWN: Shader = ("sph_reach_own", include_str!("../neighbours/sph_reach_own.wgsl"));
+const REACH_ROWS: Shader = ("sph_reach_rows", include_str!("../neighbours/sph_reach_rows.wgsl"));
+const REACH: Shader = ("sph_reach", include_str!("../neighbours/sph_reach.wgsl"));
+const DENSITY: Shader = ("sph_density", include_str!("../density/sph_density.wgsl"));
+const PUSH: Shader = ("sph_push", include_str!("../obstacles/sph_push.wgsl"));
 const ON_OBSTACLES: Shader = ("sph_on_obstacles", include_str!("../obstacles/sph_on_obstacles.wgsl"));
-const FORCES: Shader = ("sph_forces", include_str!("../sph_forces.wgsl"));
+const FORCES: Shader = ("sph_forces", include_str!("../forces/sph_forces.wgsl"));
 const FINISH: Shader = ("sph_finish", include_str!("sph_finish.wgsl"));
 
 /// Slots of the numbers of groups: see `sph_finish.wgsl`.
@@ -58,7 +59,7 @@ const IN_AIR: u32 = 4;
 
 /// Everything on the device.
 #[derive(Debug)]
-pub(super) struct Tasks {
+pub(in crate::sph_swe) struct Tasks {
     pub memory: Memory,
     sort: CellSort,
     drift: Task,
@@ -83,7 +84,7 @@ pub(super) struct Tasks {
 }
 
 /// A shader that needs no smoothing kernel, with what it works on.
-pub(super) fn task(gpu: &Gpu, (name, text): Shader, memory: &Memory) -> Task {
+pub(in crate::sph_swe) fn task(gpu: &Gpu, (name, text): Shader, memory: &Memory) -> Task {
     GpuKernel::new(gpu, name, text, LIBRARY).on(gpu, memory)
 }
 
@@ -179,8 +180,10 @@ impl Tasks {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{gauges, maps, seen};
+    use super::super::seen;
     use super::*;
+    use crate::sph_swe::gauges::on_gpu::SHADERS;
+    use crate::sph_swe::maps::on_gpu::SHADER;
     use corpuscle_gpu::{Buffers, MOST_STORAGE_BUFFERS, check_shader};
 
     #[test]
@@ -201,7 +204,7 @@ mod tests {
             FORCES,
             FINISH,
         ];
-        let others = gauges::SHADERS.into_iter().chain([maps::SHADER, seen::SHADER]);
+        let others = SHADERS.into_iter().chain([SHADER, seen::SHADER]);
         for (name, text) in passes.into_iter().chain(others) {
             let declaration = Memory::declaration();
             for kernel in corpuscle_scene::KernelName::ALL {

@@ -1,16 +1,18 @@
 //! Uploads of the data of a run.
 
 use super::MAX_SPAWN_REQUESTS;
-use super::gauges::MOST_ROWS;
-use super::maps::MAX_MAP_TIMES;
-use super::obstacles::GpuObstacles;
 use super::shared::{
     Column, Drop, MapCell, Memory, OPEN, PERIODIC, Packed, Parameters, Partial, Shown, SpawnRequest, Status, WALL,
 };
-use super::{ground, zones};
 use crate::friction::Roughness;
-use crate::sph_swe::edges::EdgeRule;
+use crate::sph_swe::boundaries::EdgeRule;
 use crate::sph_swe::falling::Falling;
+use crate::sph_swe::friction::upload::roughness;
+use crate::sph_swe::gauges::on_gpu::MOST_ROWS;
+use crate::sph_swe::ground::upload::nodes;
+use crate::sph_swe::inflow::upload::zones;
+use crate::sph_swe::maps::on_gpu::MAX_MAP_TIMES;
+use crate::sph_swe::obstacles::upload::GpuObstacles;
 use crate::sph_swe::particle::Particle;
 use crate::sph_swe::surroundings::Surroundings;
 use crate::zone::Source;
@@ -95,12 +97,12 @@ impl GpuInputs<'_> {
         let level = terrain.height(bounds.centre()[0], bounds.centre()[1]);
         let origin = Origin { centre: bounds.centre(), level };
         let mut parameters = self.parameters(origin);
-        let nodes = ground::nodes(terrain, origin, &mut parameters);
-        let rough = ground::roughness(self.roughness, bounds, origin, &mut parameters);
+        let nodes = nodes(terrain, origin, &mut parameters);
+        let rough = roughness(self.roughness, bounds, origin, &mut parameters);
         let farthest = self.scheme.largest_smoothing * self.h;
         let obstacles = GpuObstacles::new(obstacles, origin, farthest);
         (parameters.walls, parameters.outlines) = (obstacles.grid, obstacles.outlines_grid);
-        let (words, zones) = zones::words(self.sources, origin);
+        let (words, zones) = zones(self.sources, origin);
         let status = storage::<Status>(gpu, "status", 1)?;
         let keys = storage::<u32>(gpu, "numbers of particles", count)?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
@@ -116,7 +118,7 @@ impl GpuInputs<'_> {
             pushes: storage::<[f32; 4]>(gpu, "pushes of obstacles", pushed)?,
             partials: storage::<Partial>(gpu, "sums of groups", groups)?,
             counts: sort.counts.clone(),
-            places: sort.cell_slots.clone(),
+            slots: sort.cell_slots.clone(),
             keys,
             start: sort.start.clone(),
             order: sort.order.clone(),
@@ -146,20 +148,20 @@ impl GpuInputs<'_> {
     }
 }
 
-/// Where the shaders count from, in model coordinates: single precision has some 7 digits, which are not to be spent on the place of the whole.
+/// Where the shaders count from, in model coordinates: single precision has some 7 digits, which are not to be spent on the position of the whole.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Origin {
+pub(in crate::sph_swe) struct Origin {
     pub centre: [f64; 2],
     pub level: f64,
 }
 
 impl Origin {
-    /// A place from the centre.
-    pub fn relative(self, place: [f64; 2]) -> [f32; 2] {
-        [0, 1].map(|axis| (place[axis] - self.centre[axis]) as f32)
+    /// A position from the centre.
+    pub fn relative(self, position: [f64; 2]) -> [f32; 2] {
+        [0, 1].map(|axis| (position[axis] - self.centre[axis]) as f32)
     }
 
-    fn place(self, x: f32, y: f32) -> [f64; 2] {
+    fn position(self, x: f32, y: f32) -> [f64; 2] {
         [f64::from(x) + self.centre[0], f64::from(y) + self.centre[1]]
     }
 
@@ -167,7 +169,7 @@ impl Origin {
         let Particle { u, v, ax, ay, volume, depth, h, next_h, ground, .. } = *particle;
         let [x, y] = self.relative([particle.x, particle.y]);
         Packed {
-            place_and_velocity: [x, y, u as f32, v as f32],
+            position_and_velocity: [x, y, u as f32, v as f32],
             acceleration_volume_depth: [ax, ay, volume, depth].map(|value| value as f32),
             lengths_and_ground: [h as f32, next_h as f32, (ground - self.level) as f32, 0.0],
             identity: [particle.id as u32, particle.outside.map_or(0, |side| u32::from(side) + 1), 0, 0],
@@ -176,11 +178,11 @@ impl Origin {
 
     /// But for the slope of the ground, which is the terrain's.
     pub fn unpacked(self, packed: &Packed) -> Particle {
-        let [x, y, u, v] = packed.place_and_velocity;
+        let [x, y, u, v] = packed.position_and_velocity;
         let [ax, ay, volume, depth] = packed.acceleration_volume_depth.map(f64::from);
         let [h, next_h, ground, _] = packed.lengths_and_ground.map(f64::from);
         let [id, outside, ..] = packed.identity;
-        let [x, y] = self.place(x, y);
+        let [x, y] = self.position(x, y);
         Particle {
             x,
             y,
@@ -202,7 +204,7 @@ impl Origin {
     pub fn drop(self, falling: &Falling) -> Drop {
         let Particle { x, y, u, v, volume, h, id, .. } = falling.particle;
         Drop {
-            place: self.relative([x, y]),
+            position: self.relative([x, y]),
             velocity: [u as f32, v as f32],
             z: (falling.z - self.level) as f32,
             w: falling.w as f32,
@@ -214,7 +216,7 @@ impl Origin {
     }
 
     pub fn falling(self, drop: &Drop) -> Falling {
-        let [x, y] = self.place(drop.place[0], drop.place[1]);
+        let [x, y] = self.position(drop.position[0], drop.position[1]);
         let mut particle = Particle::new(u64::from(drop.id), x, y, f64::from(drop.volume), f64::from(drop.h));
         [particle.u, particle.v] = drop.velocity.map(f64::from);
         Falling { particle, z: f64::from(drop.z) + self.level, w: f64::from(drop.w) }

@@ -2,7 +2,11 @@
 //!
 //! Boundary particles fill them, have mass and push (Akinci et al. 2012). Beyond that no particle stays inside: one that a step takes in is put back to the wall.
 
+mod impulses;
+mod push;
 mod sites;
+#[cfg(feature = "gpu")]
+pub(super) mod upload;
 
 pub(crate) use sites::{Site, Sites};
 
@@ -12,7 +16,7 @@ use crate::obstacles::Outline;
 #[cfg(feature = "gpu")]
 use crate::obstacles::OutlineCells;
 use crate::obstacles::Outlines;
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_sph::kernel::{CubicSpline, Kernel, SmoothingKernel};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
@@ -48,7 +52,7 @@ impl Obstacles {
     /// The obstacles of a scene with these outlines for particles `spacing` m apart where they are closest whose `kernel` has the support of the
     /// start; they reach at most `reach` m.
     pub fn new(
-        flood: &Settings,
+        flood: &Flood,
         terrain: &Terrain,
         outlines: Outlines,
         spacing: f64,
@@ -84,29 +88,29 @@ impl Obstacles {
         !self.outlines.all.is_empty()
     }
 
-    /// Whether a particle at a place may reach one.
-    pub fn may_reach(&self, place: [f64; 2]) -> bool {
-        !self.outlines.near(place).is_empty()
+    /// Whether a particle at a position may reach one.
+    pub fn may_reach(&self, position: [f64; 2]) -> bool {
+        !self.outlines.near(position).is_empty()
     }
 
-    /// Whether a place is inside one.
-    pub fn hold(&self, place: [f64; 2]) -> bool {
-        self.outlines.hold(place)
+    /// Whether a position is inside one.
+    pub fn hold(&self, position: [f64; 2]) -> bool {
+        self.outlines.hold(position)
     }
 
-    /// Calls `found` with each boundary particle nearer than `reach` to a place, its distance, and the way to it, m.
+    /// Calls `found` with each boundary particle nearer than `reach` to a position, its distance, and the way to it, m.
     #[inline]
-    pub fn each(&self, place: [f64; 2], reach: f64, found: impl FnMut(&Site, f64, [f64; 2])) {
-        if self.may_reach(place) {
-            self.sites.each(place, reach, found);
+    pub fn each(&self, position: [f64; 2], reach: f64, found: impl FnMut(&Site, f64, [f64; 2])) {
+        if self.may_reach(position) {
+            self.sites.each(position, reach, found);
         }
     }
 
-    /// What obstacles cover at a place of the cubic spline, by which particles are arranged at the start and the water is sampled.
-    pub fn coverage(&self, place: [f64; 2], h: f64) -> Coverage {
+    /// What obstacles cover at a position of the cubic spline, by which particles are arranged at the start and the water is sampled.
+    pub fn coverage(&self, position: [f64; 2], h: f64) -> Coverage {
         let spline = CubicSpline::<2>::new(h);
         let [mut part, mut r_slope] = [0.0; 2];
-        self.each(place, 2.0 * h, |site, r, _| {
+        self.each(position, 2.0 * h, |site, r, _| {
             part += site.area * spline.value_at(r);
             r_slope += site.area * r * spline.slope(r);
         });
@@ -120,11 +124,11 @@ impl Obstacles {
     /// each obstacle's impulse, m4/s, in `impulses`, and returns their number.
     pub fn resolve_penetration(&self, particles: &mut [Particle], spacing: f64, impulses: &mut [[f64; 2]]) -> usize {
         let put_back = |particle: &mut Particle| {
-            let place = [particle.x, particle.y];
-            if particle.outside.is_some() || !self.may_reach(place) {
+            let position = [particle.x, particle.y];
+            if particle.outside.is_some() || !self.may_reach(position) {
                 return None;
             }
-            let nearest = self.outlines.around(place)?;
+            let nearest = self.outlines.around(position)?;
             let way = BEFORE_WALL * spacing - nearest.distance;
             particle.x += way * nearest.normal[0];
             particle.y += way * nearest.normal[1];

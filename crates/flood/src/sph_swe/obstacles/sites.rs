@@ -10,9 +10,9 @@ const CELL_SAMPLES_PER_SIDE: usize = 4;
 /// A boundary particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Site {
-    /// Place, m.
+    /// Position, m.
     pub x: f64,
-    /// Place, m.
+    /// Position, m.
     pub y: f64,
     /// Area of the obstacle that it stands for, m2.
     pub area: f64,
@@ -93,7 +93,7 @@ impl Sites {
         }
     }
 
-    /// Calls `found` with each site nearer than `reach` to a place, its distance, and the way to it, m.
+    /// Calls `found` with each site nearer than `reach` to a position, its distance, and the way to it, m.
     #[inline]
     pub fn each(&self, [x, y]: [f64; 2], reach: f64, mut found: impl FnMut(&Site, f64, [f64; 2])) {
         if self.all.is_empty() {
@@ -113,18 +113,18 @@ impl Sites {
 fn site(outlines: &Outlines, number: usize, corner: [f64; 2], pitch: f64) -> Option<Site> {
     let outline = &outlines.all[number];
     let step = pitch / CELL_SAMPLES_PER_SIDE as f64;
-    let place = |k: usize| {
+    let position = |k: usize| {
         [
             corner[0] + ((k % CELL_SAMPLES_PER_SIDE) as f64 + 0.5) * step,
             corner[1] + ((k / CELL_SAMPLES_PER_SIDE) as f64 + 0.5) * step,
         ]
     };
     let inside: Vec<[f64; 2]> = (0..CELL_SAMPLES_PER_SIDE * CELL_SAMPLES_PER_SIDE)
-        .map(place)
-        .filter(|&place| outline.contains(place))
+        .map(position)
+        .filter(|&position| outline.contains(position))
         .collect();
     let count = inside.len() as f64;
-    let [x, y] = [0, 1].map(|axis| inside.iter().map(|place| place[axis]).sum::<f64>() / count);
+    let [x, y] = [0, 1].map(|axis| inside.iter().map(|position| position[axis]).sum::<f64>() / count);
     (!inside.is_empty()).then(|| Site {
         x,
         y,

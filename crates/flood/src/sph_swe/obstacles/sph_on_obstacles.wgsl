@@ -1,4 +1,4 @@
-// Sums the force on each obstacle, one group of threads for each, and over time. Twin of `add_obstacle_impulses` in `step.rs`.
+// Sums the force on each obstacle, one group of threads for each, and over time. Twin of `add_obstacle_impulses` in `impulses.rs`.
 #import compensated_sums
 #import sph_neighbours
 #import group_reduction

@@ -3,17 +3,17 @@
 // two corners each.
 #import declared
 
-// The way from a side to a place.
-fn way_from(place: vec2f, side: vec4f) -> vec2f {
+// The way from a side to a position.
+fn way_from(position: vec2f, side: vec4f) -> vec2f {
     let along = side.zw - side.xy;
-    let part = clamp(dot(place - side.xy, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
-    return place - side.xy - part * along;
+    let part = clamp(dot(position - side.xy, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
+    return position - side.xy - part * along;
 }
 
 // Whether a ray to the east crosses a side.
-fn crosses(place: vec2f, side: vec4f) -> bool {
-    let part = (place.y - side.y) / (side.w - side.y);
-    return ((side.y > place.y) != (side.w > place.y)) && place.x < side.x + part * (side.z - side.x);
+fn crosses(position: vec2f, side: vec4f) -> bool {
+    let part = (position.y - side.y) / (side.w - side.y);
+    return ((side.y > position.y) != (side.w > position.y)) && position.x < side.x + part * (side.z - side.x);
 }
 
 fn side(number: u32) -> vec4f {
@@ -26,10 +26,10 @@ fn side(number: u32) -> vec4f {
     );
 }
 
-// The cell by which outlines near a place are found; NONE where there is none.
-fn outline_cell(place: vec2f) -> u32 {
+// The cell by which outlines near a position are found; NONE where there is none.
+fn outline_cell(position: vec2f) -> u32 {
     let grid = parameters.outlines;
-    let at = (place - grid.corner) * grid.per_cell;
+    let at = (position - grid.corner) * grid.per_cell;
     if grid.columns == 0u || any(at < vec2f(0.0)) || any(at >= vec2f(vec2u(grid.columns, grid.rows))) {
         return NONE;
     }

@@ -5,8 +5,8 @@
 
 mod density;
 
-use super::arrangement::Arrangement;
-use super::edges::EdgeRules;
+use super::boundaries::EdgeRules;
+use super::neighbours::Arrangement;
 use super::obstacles::Obstacles;
 use super::particle::Particle;
 use corpuscle_sph::kernel::CubicSpline;
@@ -34,10 +34,10 @@ const LARGEST_VOLUME: f64 = 2.0;
 
 /// A body of water to be filled with particles.
 pub struct Body<'a> {
-    /// Depth of the water at a place, m; 0 or less where there is none. Goes on beyond `inside` where the ground does,
+    /// Depth of the water at a position, m; 0 or less where there is none. Goes on beyond `inside` where the ground does,
     /// so that the rim of the body is cut out of a larger glass and stands as close as its middle.
     pub depth: &'a (dyn Fn(f64, f64) -> f64 + Sync),
-    /// Whether a place belongs to the body.
+    /// Whether a position belongs to the body.
     pub inside: &'a (dyn Fn(f64, f64) -> bool + Sync),
     /// A rectangle round the body.
     pub within: Bounds,
@@ -147,23 +147,23 @@ impl Body<'_> {
     /// Moves each particle away from where its neighbours crowd, along -sum V grad W, but not to where the required depth is 0.
     fn relax(&self, arrangement: &Arrangement, particles: &mut [Particle], edges: &EdgeRules) {
         let Arrangement { x, y, reach_squared, real, lists, .. } = arrangement;
-        // The area that stands at each place, by the depth wanted there: equal in an even arrangement.
+        // The area of each entry, by the depth wanted there: equal in an even arrangement.
         let area: Vec<f64> = reach_squared.iter().map(|square| square / (4.0 * ETA * ETA)).collect();
-        particles.par_iter_mut().zip(real).for_each(|(particle, &place)| {
-            let i = place as usize;
+        particles.par_iter_mut().zip(real).for_each(|(particle, &index)| {
+            let i = index as usize;
             let h = particle.h;
             let list = lists.of(i);
             let [push_x, push_y] = dispatch!(Level::new(), simd => crowding(simd, x, y, &area, list, i, h));
             let longest = LONGEST_SHIFT * h / ETA;
             let shift = [push_x, push_y].map(|push| -0.2 * h * h * push);
             let clip = (longest / shift[0].hypot(shift[1]).max(1e-300)).min(1.0);
-            let mut place = [particle.x + clip * shift[0], particle.y + clip * shift[1]];
-            if edges.keep(&mut place, &mut [0.0; 2]).is_some() {
+            let mut position = [particle.x + clip * shift[0], particle.y + clip * shift[1]];
+            if edges.keep(&mut position, &mut [0.0; 2]).is_some() {
                 return;
             }
-            let depth = (self.depth)(place[0], place[1]);
+            let depth = (self.depth)(position[0], position[1]);
             if depth > self.shallowest {
-                [particle.x, particle.y] = place;
+                [particle.x, particle.y] = position;
                 particle.h = self.smoothing(depth);
             }
         });
@@ -186,9 +186,9 @@ impl Body<'_> {
             densities.resize(x.len(), Density::default());
             let reach = EachReach { squared: reach_squared, near: Near::Either };
             lists.search(cells, [x, y], &reach, &mut densities, &Densities { reach_squared });
-            for (particle, &place) in particles.iter_mut().zip(real.iter()) {
+            for (particle, &index) in particles.iter_mut().zip(real.iter()) {
                 let covered = obstacles.coverage([particle.x, particle.y], particle.h);
-                let density = densities[place as usize].beside(covered);
+                let density = densities[index as usize].beside(covered);
                 particle.h = density.next_h(particle.h, ETA).min(self.largest_h());
                 particle.next_h = particle.h;
                 particle.depth = (self.depth)(particle.x, particle.y);

@@ -17,14 +17,14 @@ use super::patch::Patch;
 use super::solver::Solver;
 use super::structures::Patches;
 use super::{VoronoiFlood, rain::Weather};
-use crate::setup::setup;
+use crate::error::setup;
 use borders::Border;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Adaptive as Settings, TimeSteps};
+use corpuscle_scene::TimeSteps;
 
 /// Adaptive mesh refinement: its settings and working memory.
 pub(super) struct Adaptive {
-    settings: Settings,
+    settings: corpuscle_scene::Adaptive,
     /// How often the spacing is halved at most.
     finest: u8,
     /// How often it is halved everywhere in each block by `[[flood.finer]]`; empty where there is none.
@@ -44,7 +44,7 @@ pub(super) struct Old {
 
 impl Adaptive {
     /// Adaptive refinement of a layout by a scene's settings.
-    pub fn new(settings: Settings, layout: &Layout, has_parts: bool) -> Self {
+    pub fn new(settings: corpuscle_scene::Adaptive, layout: &Layout, has_parts: bool) -> Self {
         let finest = layout.level_of(settings.finest_m);
         let of_parts = if has_parts { refinement::levels_of_parts(layout) } else { Vec::new() };
         Self { settings, finest, of_parts, required: Vec::new() }

@@ -105,8 +105,8 @@ impl<'a> Overlap<'a> {
         let toward = polygon.iter().flat_map(|corner| {
             [0.25, 0.5, 0.75].map(|part| [0, 1].map(|axis| middle[axis] + part * (corner[axis] - middle[axis])))
         });
-        let places = std::iter::once(middle).chain(toward);
-        places.map(|at| self.new.layout.home(at)).find_map(|at| self.new.cell_at(at)).map(|cell| cell as u32)
+        let positions = std::iter::once(middle).chain(toward);
+        positions.map(|at| self.new.layout.home(at)).find_map(|at| self.new.cell_at(at)).map(|cell| cell as u32)
     }
 
     /// What an old cell, made of `parts`, and a new one have in common.
@@ -148,7 +148,7 @@ impl<'a> Overlap<'a> {
         })
     }
 
-    /// How far a part of an old cell is seen from its place beside the cell's centroid, m, and by how much its ground stands higher there, m: beyond joined
+    /// How far a part of an old cell is seen from its position beside the cell's centroid, m, and by how much its ground stands higher there, m: beyond joined
     /// sides.
     fn seen_from(&self, old: usize, part: &[[f64; 2]]) -> ([f64; 2], f64) {
         let sides = self.sides(part[0], self.old.centroid[old]);

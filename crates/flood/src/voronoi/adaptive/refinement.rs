@@ -4,7 +4,7 @@ use super::super::VoronoiFlood;
 use super::super::domain::{any, total};
 use super::super::mesh::{Blocks, Layout};
 use super::super::solver::Solver;
-use corpuscle_scene::Adaptive as Settings;
+use corpuscle_scene::Adaptive;
 use rayon::prelude::*;
 
 /// Part of `rise_over_depth` below which cells become coarser (hysteresis).
@@ -73,7 +73,7 @@ fn points(blocks: &Blocks) -> f64 {
 /// The criteria of refinement.
 struct Criteria<'a> {
     solver: &'a Solver,
-    settings: &'a Settings,
+    settings: &'a Adaptive,
     finest: u8,
     wet_depth: f64,
 }
@@ -166,7 +166,7 @@ impl<'a> BlockLevels<'a> {
     }
 }
 
-/// A place and the eight round it.
+/// A block and the eight round it, in blocks.
 const AROUND: [[f64; 2]; 9] =
     [[0.0, 0.0], [-1.0, -1.0], [0.0, -1.0], [1.0, -1.0], [-1.0, 0.0], [1.0, 0.0], [-1.0, 1.0], [0.0, 1.0], [1.0, 1.0]];
 
@@ -175,8 +175,8 @@ pub(super) fn levels_of_parts(layout: &Layout) -> Vec<u8> {
     let blocks = layout.blocks();
     let level = |block: usize| {
         let [[west, south], [east, north]] = blocks.corners(block);
-        let places = [[west, south], [east, south], [east, north], [west, north], blocks.middle(block)];
-        places.into_iter().map(|at| layout.level_of_parts(at)).min().unwrap_or(0)
+        let positions = [[west, south], [east, south], [east, north], [west, north], blocks.middle(block)];
+        positions.into_iter().map(|at| layout.level_of_parts(at)).min().unwrap_or(0)
     };
     (0..blocks.levels().len()).into_par_iter().map(level).collect()
 }

@@ -5,9 +5,10 @@ use super::super::mesh::{LINE, SOLID};
 use super::super::reconstruction::AtFace;
 use super::super::solver::Solver;
 use super::{Boundary, Now, state};
-use crate::setup::{load, setup};
+use crate::error::setup;
+use crate::series::load;
 use corpuscle_model::{ExactSum, ModelError};
-use corpuscle_scene::{Edge, Flood as Settings, Side, Table};
+use corpuscle_scene::{Edge, Flood, Side, Table};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 
@@ -64,7 +65,7 @@ fn check_overlaps(parts: &[Part]) -> Result<(), ModelError> {
 }
 
 impl Boundaries {
-    pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
+    pub fn open(scene: &Flood, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
         let edges = &scene.edges;
         let sides = [&edges.west, &edges.east, &edges.south, &edges.north];
         let of_parts = scene.edge_part.iter().map(|part| &part.edge);
@@ -174,7 +175,7 @@ impl Boundaries {
             let rule = face.border().filter(|side| *side != SOLID).map(|side| {
                 if side == LINE {
                     let of_line = mesh.line_faces.binary_search_by_key(&border, |(face, _)| *face);
-                    let line = of_line.map_or(0, |place| mesh.line_faces[place].1);
+                    let line = of_line.map_or(0, |index| mesh.line_faces[index].1);
                     return (4 + self.parts.len()) as u16 + line as u16;
                 }
                 let side = usize::from(side);

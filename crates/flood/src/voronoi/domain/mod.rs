@@ -148,7 +148,7 @@ impl Domain {
     /// Takes cells that were added to the mesh for its own or others'.
     pub fn add_cells(&mut self, mesh: &Mesh) {
         for cell in self.own.len()..mesh.len() {
-            self.own.push(self.owns_tile(mesh.layout.place(mesh.point[cell]).0));
+            self.own.push(self.owns_tile(mesh.layout.tile_and_index(mesh.point[cell]).0));
         }
     }
 
@@ -172,7 +172,7 @@ impl Domain {
         let mesh = &solver.mesh;
         let mut wanted: CellsByProcess = Vec::new();
         for cell in self.ghosts(solver) {
-            let owner = usize::from(self.owners[mesh.layout.place(mesh.point[cell as usize]).0]);
+            let owner = usize::from(self.owners[mesh.layout.tile_and_index(mesh.point[cell as usize]).0]);
             match wanted.iter_mut().find(|(process, _)| *process == owner) {
                 Some((_, cells)) => cells.push(cell),
                 None => wanted.push((owner, vec![cell])),

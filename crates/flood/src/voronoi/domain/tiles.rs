@@ -72,7 +72,7 @@ impl VoronoiFlood {
         let mut next = 0;
         let cells = |tile: &u32| {
             let first = next;
-            while next < mesh.len() && mesh.layout.place(mesh.point[next]).0 == *tile as usize {
+            while next < mesh.len() && mesh.layout.tile_and_index(mesh.point[next]).0 == *tile as usize {
                 next += 1;
             }
             (*tile, first..next)

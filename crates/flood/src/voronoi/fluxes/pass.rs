@@ -153,7 +153,7 @@ struct Limits<S: Simd> {
     counts: Lanes<S>,
 }
 
-/// Puts what eight faces do into their places.
+/// Puts what eight faces do into their fluxes.
 #[inline(always)]
 fn store<S: Simd>(
     simd: S,
@@ -183,7 +183,7 @@ struct Block {
     /// Differences from both sides, normal, and the kept parts of both.
     differences: [[f64; LANES]; LANES],
     /// Vectors between the centroids and to the face, and volumes of both.
-    places: [[f64; LANES]; LANES],
+    vectors: [[f64; LANES]; LANES],
 }
 
 impl Block {
@@ -219,7 +219,7 @@ impl Block {
             let ([bx, by], [ox, oy]) = (face.between, face.offset);
             let volume = [here.depth * mesh.area[i], there.depth * mesh.area[j]];
             let counts = if inputs.domain.is_none_or(|domain| domain.owns(i)) { 1.0 } else { 0.0 };
-            self.places[k] =
+            self.vectors[k] =
                 [f64::from(bx), f64::from(by), f64::from(ox), f64::from(oy), volume[0], volume[1], counts, 0.0];
         }
         any
@@ -232,7 +232,7 @@ impl Block {
         let [dx0, lx0, ux0, vx0, dy0, ly0, uy0, vy0] = turned(simd, &self.slopes[0]);
         let [dx1, lx1, ux1, vx1, dy1, ly1, uy1, vy1] = turned(simd, &self.slopes[1]);
         let [depth, level, depth_back, level_back, x, y, kept_here, kept_there] = turned(simd, &self.differences);
-        let [bx, by, ox, oy, volume_here, volume_there, counts, _] = turned(simd, &self.places);
+        let [bx, by, ox, oy, volume_here, volume_there, counts, _] = turned(simd, &self.vectors);
         let length = (x * x + y * y).sqrt();
         let inverse = Lanes::splat(simd, 1.0) / length.max(f64::MIN_POSITIVE);
         let faces = Faces {

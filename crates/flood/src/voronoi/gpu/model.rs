@@ -369,13 +369,13 @@ impl VoronoiFlood {
             !(column.volume + column.momentum[0] + column.momentum[1]).is_finite()
         };
         let cell = self.solver.columns.iter().position(is_broken);
-        let place = cell.map(|cell| self.terrain.to_own(self.solver.mesh.centroid[cell]));
+        let position = cell.map(|cell| self.terrain.to_own(self.solver.mesh.centroid[cell]));
         self.solver.take_back();
-        let place = place.map_or(String::new(), |[x, y]| format!(" at [{x:.6}, {y:.6}]"));
+        let position = position.map_or(String::new(), |[x, y]| format!(" at [{x:.6}, {y:.6}]"));
         ModelError::Breakdown {
             time: self.state.before,
             step: self.state.steps,
-            what: format!("a flux{place} is no longer a number; look in the last frame at the water there"),
+            what: format!("a flux{position} is no longer a number; look in the last frame at the water there"),
         }
     }
 

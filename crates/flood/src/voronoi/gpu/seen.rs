@@ -1,6 +1,6 @@
 //! The water as particles on the device, for drawing.
 
-use super::shared::{Memory, Place, Shown};
+use super::shared::{CellPosition, Memory, Shown};
 use super::{GpuSolver, LIBRARY};
 use crate::voronoi::mesh::Mesh;
 use corpuscle_gpu::{DeviceParticles, GpuError, Kernel, Seen, filled, uniform};
@@ -26,16 +26,16 @@ impl GpuSolver {
         let [x, y] = mesh.layout.bounds.centre();
         let level = mesh.bed.first().copied().unwrap_or(0.0);
         let particles = DeviceParticles::new(gpu, mesh.len(), [x, y, level], mesh.layout.spacing())?;
-        let place = |cell: usize| {
+        let position = |cell: usize| {
             let [east, north] = mesh.centroid[cell];
-            Place {
+            CellPosition {
                 at: [(east - x) as f32, (north - y) as f32],
                 bed: (mesh.bed[cell] - level) as f32,
                 id: mesh.point[cell] as u32,
             }
         };
         let memory = Memory {
-            places: filled(gpu, "places of cells", &(0..mesh.len()).map(place).collect::<Vec<_>>())?,
+            positions: filled(gpu, "positions of cells", &(0..mesh.len()).map(position).collect::<Vec<_>>())?,
             shown: uniform(gpu, "time shown", &Shown::default()),
             drawn: particles.buffer.clone(),
             ..self.memory.clone()

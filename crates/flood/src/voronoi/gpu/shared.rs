@@ -354,7 +354,7 @@ corpuscle_gpu::declare! {
             pub end: u32,
         }
 
-        /// What lets water out, holds it at a level or leads it to another place.
+        /// What lets water out, holds it at a level or leads it to another position.
         pub struct Structure {
             /// First cells of its patches among those of all.
             pub firsts: [u32; 2],
@@ -389,7 +389,7 @@ corpuscle_gpu::declare! {
         }
 
         /// Where a cell is drawn.
-        pub struct Place {
+        pub struct CellPosition {
             /// Centroid from the origin of what is drawn, m.
             pub at: [f32; 2],
             /// Its bed above that origin, m.
@@ -592,7 +592,7 @@ corpuscle_gpu::declare! {
         /// Discharge of each structure in the last step, m3/s.
         storage structure_discharges: [f32],
         /// Position of each cell for drawing; empty where nothing is drawn.
-        storage places: [Place],
+        storage positions: [CellPosition],
         /// The time that is shown.
         uniform shown: Shown,
         /// Particles for drawing.

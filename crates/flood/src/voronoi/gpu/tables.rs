@@ -6,7 +6,7 @@ use corpuscle_gpu::to_pair;
 /// Tables by number.
 #[derive(Default)]
 pub(in crate::voronoi) struct Tables {
-    /// Rows of each: place, and value.
+    /// Rows of each: abscissa, and value.
     all: Vec<Vec<[f64; 2]>>,
 }
 
@@ -28,8 +28,8 @@ impl Tables {
             let header = TABLE as usize * number;
             words[header] = words.len() as u32;
             words[header + 1] = rows.len() as u32;
-            for &[place, value] in rows {
-                let [high, low] = to_pair(place);
+            for &[abscissa, value] in rows {
+                let [high, low] = to_pair(abscissa);
                 words.extend([high, low, value as f32].map(f32::to_bits));
             }
         }

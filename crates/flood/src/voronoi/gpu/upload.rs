@@ -3,8 +3,8 @@
 use super::super::structures::{Flows, Structures};
 use super::Sides;
 use super::shared::{
-    BorderTotals, Column, Face, Flux, Found, Ground, Link, Memory, NONE, PLAN_SLOT, Parameters, Place, Plan, Push,
-    Record, Shown, Slopes, Status, Water,
+    BorderTotals, CellPosition, Column, Face, Flux, Found, Ground, Link, Memory, NONE, PLAN_SLOT, Parameters, Plan,
+    Push, Record, Shown, Slopes, Status, Water,
 };
 use super::supplies::{supplies, supply_tables};
 use super::tables::Tables;
@@ -138,7 +138,7 @@ impl Input<'_> {
             structures: filled(gpu, "structures", &works.structures)?,
             in_patches: filled(gpu, "cells of patches", &works.in_patches)?,
             structure_discharges: filled(gpu, "discharges of structures", &self.discharges())?,
-            places: filled::<Place>(gpu, "places of cells", &[])?,
+            positions: filled::<CellPosition>(gpu, "positions of cells", &[])?,
             shown: uniform(gpu, "time shown", &Shown::default()),
             drawn: filled::<u32>(gpu, "water as seen", &[])?,
             supplies: filled(gpu, "supplies", &supplies)?,

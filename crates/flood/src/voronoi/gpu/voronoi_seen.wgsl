@@ -13,13 +13,13 @@ fn particle_of(cell: u32) -> DeviceParticle {
     if own.depth <= shown.least_depth {
         return particle;
     }
-    let place = places[cell];
-    particle.position = vec3f(place.at, place.bed + own.depth + own.shift);
+    let position = positions[cell];
+    particle.position = vec3f(position.at, position.bed + own.depth + own.shift);
     particle.spacing = sqrt(area);
     particle.velocity = vec3f(own.velocity, 0.0);
     particle.depth = own.depth;
     particle.volume = volume;
-    particle.id = place.id;
+    particle.id = position.id;
     return particle;
 }
 

@@ -75,8 +75,8 @@ impl Blocks {
 
     /// South-west and north-east corner of a block, m.
     pub fn corners(&self, block: usize) -> [[f64; 2]; 2] {
-        let place = [block % self.count[0], block / self.count[0]];
-        [0.0, 1.0].map(|next| [0, 1].map(|axis| self.low[axis] + (place[axis] as f64 + next) * self.size[axis]))
+        let index = [block % self.count[0], block / self.count[0]];
+        [0.0, 1.0].map(|next| [0, 1].map(|axis| self.low[axis] + (index[axis] as f64 + next) * self.size[axis]))
     }
 
     /// Middle of a block, m.
@@ -87,9 +87,9 @@ impl Blocks {
 
     /// Number of the block that holds a position; none outside.
     pub fn at(&self, at: [f64; 2]) -> Option<usize> {
-        let place = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.size[axis]);
-        let inside = (0..2).all(|axis| place[axis] >= 0.0 && place[axis] < self.count[axis] as f64);
-        inside.then(|| place[1] as usize * self.count[0] + place[0] as usize)
+        let position = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.size[axis]);
+        let inside = (0..2).all(|axis| position[axis] >= 0.0 && position[axis] < self.count[axis] as f64);
+        inside.then(|| position[1] as usize * self.count[0] + position[0] as usize)
     }
 
     /// Size of a block, m.
@@ -114,9 +114,9 @@ impl Blocks {
         }
         let far = reach + self.band();
         let span = |axis: usize| {
-            let place = |x: f64| ((x - self.low[axis]) / self.size[axis]).floor();
+            let index = |x: f64| ((x - self.low[axis]) / self.size[axis]).floor();
             let last = self.count[axis] as f64 - 1.0;
-            let (from, to) = (place(at[axis] - far).max(0.0), place(at[axis] + far).min(last));
+            let (from, to) = (index(at[axis] - far).max(0.0), index(at[axis] + far).min(last));
             // No block where the position is farther outside than that.
             if from > to { 0..0 } else { from as usize..to as usize + 1 }
         };
@@ -134,9 +134,9 @@ impl Blocks {
     }
 
     /// Distance of a position from a block, m; 0 inside.
-    fn distance(&self, place: [usize; 2], at: [f64; 2]) -> f64 {
+    fn distance(&self, index: [usize; 2], at: [f64; 2]) -> f64 {
         let [x, y] = [0, 1].map(|axis| {
-            let low = self.low[axis] + place[axis] as f64 * self.size[axis];
+            let low = self.low[axis] + index[axis] as f64 * self.size[axis];
             (low - at[axis]).max(at[axis] - low - self.size[axis]).max(0.0)
         });
         x.hypot(y)

@@ -140,7 +140,7 @@ fn entries(layout: &Layout, walls: &Walls, ground: &impl Ground) -> Vec<Entry> {
 
 /// The Voronoi cell of a point cut by walls, none if they do not; or whole, without walls.
 fn entry(layout: &Layout, point: u64, walls: Option<&Walls>, ground: &impl Ground) -> Option<Entry> {
-    let (tile, k) = layout.place(point);
+    let (tile, k) = layout.tile_and_index(point);
     let position = layout.position(tile, k);
     let (mut polygon, mut candidates) = (Polygon::default(), Vec::new());
     layout.cell(tile, k, &mut polygon, &mut candidates);
@@ -345,7 +345,7 @@ impl<'a> Build<'a> {
 
     /// The area below which a piece is small, m2.
     fn small(&self, piece: usize) -> f64 {
-        let (tile, k) = self.layout.place(self.entries[self.entry_of[piece]].point);
+        let (tile, k) = self.layout.tile_and_index(self.entries[self.entry_of[piece]].point);
         MIN_AREA_RATIO * self.layout.spacing_at(tile, k).powi(2)
     }
 
@@ -504,7 +504,7 @@ impl<'a> Build<'a> {
         }
         let whole = area.max(f64::MIN_POSITIVE);
         let point = self.entries[self.entry_of[own]].point;
-        let (tile, k) = self.layout.place(point);
+        let (tile, k) = self.layout.tile_and_index(point);
         let cell = NewCell {
             point: self.id(own),
             centroid: [0, 1].map(|axis| base[axis] + moment[axis] / whole),

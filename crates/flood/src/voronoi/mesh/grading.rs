@@ -5,7 +5,7 @@
 
 use super::blocks::{Blocks, lowered};
 use super::layout::Points;
-use crate::setup::is_inside;
+use crate::polygon::is_inside;
 use crate::voronoi::walls::{Wall, WallKind, Walls};
 use corpuscle_terrain::{Bounds, Polygon};
 use std::sync::Arc;

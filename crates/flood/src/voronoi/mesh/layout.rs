@@ -21,7 +21,7 @@ const FEWEST_A_SIDE: f64 = 5.0;
 /// How near to a side of its tile a cell must be for the next tile to be made before it gets wet, in spacings, where water comes two cells on in a step.
 const RIM: f64 = 3.0;
 
-/// Greatest shift of a point from its place in the lattice, part of the spacing.
+/// Greatest shift of a point from its position in the lattice, part of the spacing.
 const JITTER: f64 = 0.5;
 
 /// Rounds in which each point moves to the centroid of its cell (Lloyd 1982).
@@ -136,8 +136,8 @@ impl Layout {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let step = [0, 1].map(|axis| tile[axis] / lattice[axis]);
         let points = (0..(lattice[0] * lattice[1]) as usize).map(|k| {
-            let place = [k % lattice[0] as usize, k / lattice[0] as usize];
-            [0, 1].map(|axis| (place[axis] as f64 + 0.5 + random.random_range(-JITTER..JITTER)) * step[axis])
+            let index = [k % lattice[0] as usize, k / lattice[0] as usize];
+            [0, 1].map(|axis| (index[axis] as f64 + 0.5 + random.random_range(-JITTER..JITTER)) * step[axis])
         });
         let points: Vec<_> = points.collect();
         let mut pattern = Self {
@@ -293,9 +293,9 @@ impl Layout {
 
     /// South-west corner of a tile, m.
     pub fn corner(&self, tile: usize) -> [f64; 2] {
-        let place = [tile % self.tiles[0], tile / self.tiles[0]];
+        let index = [tile % self.tiles[0], tile / self.tiles[0]];
         let low = [self.bounds.x_min, self.bounds.y_min];
-        [0, 1].map(|axis| low[axis] + place[axis] as f64 * self.tile[axis])
+        [0, 1].map(|axis| low[axis] + index[axis] as f64 * self.tile[axis])
     }
 
     /// Position of point `k` of a tile relative to the tile's south-west corner, m.
@@ -315,7 +315,7 @@ impl Layout {
     }
 
     /// Tile and number there of the point with a number among all, or of the first with this number less a multiple of [`Layout::total`].
-    pub fn place(&self, point: u64) -> (usize, usize) {
+    pub fn tile_and_index(&self, point: u64) -> (usize, usize) {
         let (point, most) = (point % self.total(), self.most_points as u64);
         ((point / most) as usize, (point % most) as usize)
     }
@@ -397,11 +397,11 @@ impl Layout {
 
     /// The tile `[dx, dy]` tiles away from one, round joined sides; none beyond others.
     pub fn beside(&self, tile: usize, away: [i64; 2]) -> Option<usize> {
-        let place = [tile % self.tiles[0], tile / self.tiles[0]];
+        let index = [tile % self.tiles[0], tile / self.tiles[0]];
         let mut there = [0; 2];
         for axis in 0..2 {
             let count = self.tiles[axis] as i64;
-            let to = place[axis] as i64 + away[axis];
+            let to = index[axis] as i64 + away[axis];
             if !self.periodic[axis] && !(0..count).contains(&to) {
                 return None;
             }
@@ -523,13 +523,13 @@ mod tests {
             let mut area = 0.0;
             for (tile, k) in points(&layout) {
                 let point = layout.number(tile, k);
-                assert_eq!(layout.place(point), (tile, k));
+                assert_eq!(layout.tile_and_index(point), (tile, k));
                 layout.cell(tile, k, &mut polygon, &mut candidates);
                 area += polygon.measures().area;
                 for (k, beyond) in polygon.beyond.iter().enumerate() {
                     let Some(Beyond::Cell(number)) = beyond else { continue };
                     let there = candidates[*number as usize].point;
-                    let (tile, k_there) = layout.place(there);
+                    let (tile, k_there) = layout.tile_and_index(there);
                     layout.cell(tile, k_there, &mut other, &mut theirs);
                     let length = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
                     let shared = other.beyond.iter().enumerate().find(

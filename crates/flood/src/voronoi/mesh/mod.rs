@@ -29,7 +29,7 @@ pub(crate) const NONE: u32 = u32::MAX;
 /// Neighbours numbered from here on are sides of the terrain (0 west, 1 east, 2 south, 3 north), walls or lines.
 const FIRST_BORDER: u32 = u32::MAX - 8;
 
-/// A face to a place without data or a solid is like one to a side with this number.
+/// A face to a position without data or a solid is like one to a side with this number.
 pub(crate) const SOLID: u8 = 4;
 
 /// A face to a line inside the terrain, at which water enters or leaves, is like one to a side with this number.
@@ -186,7 +186,7 @@ struct NewEdge {
 enum NewBeyond {
     /// Number of the point, the vector to it, m, and the lift of its ground, m.
     Point(u64, [f64; 2], f64),
-    /// A cell near walls: its number, that of the face, how far from its place it is seen, m, and the lift of its ground, m.
+    /// A cell near walls: its number, that of the face, how far from its position it is seen, m, and the lift of its ground, m.
     Cell {
         point: u64,
         face: u64,
@@ -261,7 +261,7 @@ impl Mesh {
     /// Adds the tiles round a cell that must be made before it gets wet and are not, and takes them for made from here on.
     pub fn take_rim(&mut self, cell: usize, missing: &mut Vec<usize>) {
         let mask = std::mem::take(&mut self.rim[cell]);
-        let (tile, _) = self.layout.place(self.point[cell]);
+        let (tile, _) = self.layout.tile_and_index(self.point[cell]);
         let beside = AROUND.iter().enumerate().filter(|(bit, _)| mask & 1 << bit != 0);
         let tiles = beside.filter_map(|(_, away)| self.layout.beside(tile, *away));
         missing.extend(tiles.filter(|tile| self.first_of_tile[*tile] == NONE));
@@ -299,7 +299,7 @@ impl Mesh {
         if point >= self.layout.total() {
             return None;
         }
-        let (tile, k) = self.layout.place(point);
+        let (tile, k) = self.layout.tile_and_index(point);
         let first = self.first_of_tile[tile];
         if first == NONE {
             return None;
@@ -317,7 +317,7 @@ impl Mesh {
             return;
         }
         let (mut polygon, mut candidates) = (Polygon::default(), Vec::new());
-        let (tile, k) = self.layout.place(number);
+        let (tile, k) = self.layout.tile_and_index(number);
         self.layout.cell(tile, k, &mut polygon, &mut candidates);
         let position = self.layout.position(tile, k);
         parts.push(polygon.corners.iter().map(|r| [position[0] + r[0], position[1] + r[1]]).collect());
@@ -353,7 +353,7 @@ impl Mesh {
             if self.cuts.cut(point) {
                 self.cut_cells.insert(cell.point, number);
             } else {
-                self.cell_of_point[first + self.layout.place(point).1] = number;
+                self.cell_of_point[first + self.layout.tile_and_index(point).1] = number;
             }
             self.point.push(cell.point);
             self.centroid.push(cell.centroid);
@@ -407,7 +407,7 @@ impl Mesh {
         self.first_link.push(self.links.len() as u32);
     }
 
-    /// Links a cell to one with the number `point`, which is seen `shift` from its place. The face is made once both cells have their links:
+    /// Links a cell to one with the number `point`, which is seen `shift` from its position. The face is made once both cells have their links:
     /// whichever comes second finds the first's waiting.
     fn join(
         &mut self,
@@ -438,7 +438,7 @@ impl Mesh {
     }
 
     fn position_of(&self, point: u64) -> [f64; 2] {
-        let (tile, k) = self.layout.place(point);
+        let (tile, k) = self.layout.tile_and_index(point);
         self.layout.position(tile, k)
     }
 
@@ -657,7 +657,7 @@ fn new_cell(
 
 /// What is behind an edge to the point `to` away: its cell, or a solid where there is no ground.
 fn neighbour(layout: &Layout, position: [f64; 2], to: [f64; 2], point: u64, ground: &impl Ground) -> NewBeyond {
-    let (tile, k) = layout.place(point);
+    let (tile, k) = layout.tile_and_index(point);
     let home = layout.position(tile, k);
     if !ground.is_there(home) {
         return NewBeyond::Border(SOLID);

@@ -392,7 +392,7 @@ mod tests {
         let pieces = cut(&walls, |_| true);
         assert!(pieces.len() == 2 && pieces.iter().any(|piece| (piece.area - area).abs() < 1e-14));
         assert!(pieces.iter().all(|piece| opening(piece) < 1e-14));
-        let pieces = cut(&walls, |[x, y]| !crate::setup::is_inside(&ring, x, y));
+        let pieces = cut(&walls, |[x, y]| !crate::polygon::is_inside(&ring, x, y));
         assert!(pieces.len() == 1 && (pieces[0].area - (4.0 - area)).abs() < 1e-14 && opening(&pieces[0]) < 1e-14);
     }
 

@@ -1,6 +1,6 @@
 //! How much water soaks into the ground, where it always stands on it.
 
-use corpuscle_scene::{Infiltration as Scene, LandClass};
+use corpuscle_scene::LandClass;
 
 /// m/s in a mm/h.
 pub(crate) const MM_PER_H: f64 = 1e-3 / 3600.0;
@@ -18,15 +18,15 @@ pub(crate) enum Law {
 }
 
 impl Law {
-    pub fn of(scene: &Scene) -> Self {
+    pub fn of(scene: &corpuscle_scene::Infiltration) -> Self {
         match scene {
-            Scene::Constant(constant) => Self::Constant(MM_PER_H * constant.rate_mm_per_h),
-            Scene::Horton(horton) => Self::Horton {
+            corpuscle_scene::Infiltration::Constant(constant) => Self::Constant(MM_PER_H * constant.rate_mm_per_h),
+            corpuscle_scene::Infiltration::Horton(horton) => Self::Horton {
                 first: MM_PER_H * horton.first_mm_per_h,
                 last: MM_PER_H * horton.last_mm_per_h,
                 decay: horton.decay_per_h / 3600.0,
             },
-            Scene::GreenAmpt(ground) => Self::GreenAmpt {
+            corpuscle_scene::Infiltration::GreenAmpt(ground) => Self::GreenAmpt {
                 conductivity: MM_PER_H * ground.conductivity_mm_per_h,
                 head: ground.suction_m * ground.deficit,
             },

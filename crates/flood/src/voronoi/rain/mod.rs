@@ -8,9 +8,10 @@ use super::mesh::Mesh;
 use super::patch::{Change, Changed};
 use super::solver::Solver;
 use super::water::Column;
-use crate::setup::{load, setup};
+use crate::error::setup;
+use crate::series::load;
 use corpuscle_model::{ExactSum, Map, ModelError};
-use corpuscle_scene::{Flood as Settings, Table};
+use corpuscle_scene::{Flood, Table};
 use corpuscle_terrain::{RasterField, Terrain};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -70,7 +71,7 @@ pub(crate) struct Soaked {
 
 impl Weather {
     /// Rain and soils of a scene; none where it neither rains nor soaks in.
-    pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path) -> Result<Option<Self>, ModelError> {
+    pub fn open(scene: &Flood, terrain: &Terrain, folder: &Path) -> Result<Option<Self>, ModelError> {
         let by_class = scene.land_use.iter().flat_map(|land_use| &land_use.class);
         let soaks = scene.infiltration.is_some() || by_class.clone().any(|class| class.infiltration.is_some());
         if scene.rain.is_none() && !soaks {
@@ -146,9 +147,9 @@ impl Weather {
             for [x, y] in &mesh.centroid[self.factors.len()..] {
                 let factor = raster.bilinear(*x, *y).unwrap_or(0.0);
                 if factor < 0.0 {
-                    let place = terrain.to_own([*x, *y]);
+                    let position = terrain.to_own([*x, *y]);
                     let path = path.display();
-                    return Err(setup(format!("{path}: the factor of rain at {place:?} must not be negative")));
+                    return Err(setup(format!("{path}: the factor of rain at {position:?} must not be negative")));
                 }
                 self.factors.push(factor as f32);
             }

@@ -2,77 +2,15 @@
 
 use super::mesh::Mesh;
 use super::water::Column;
-use crate::fields;
-use crate::setup::{is_inside, setup};
+use crate::error::setup;
+use crate::extent::{is_beside, span};
+use crate::initial_water::{Filling, StartWater};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Flood as Settings, Water};
-use corpuscle_terrain::{Bounds, RasterField, Terrain};
+use corpuscle_scene::Flood;
+use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
-use std::path::Path;
-
-/// A function of the position in model coordinates, m.
-pub type OfPosition<'a, T> = Box<dyn Fn(f64, f64) -> T + Sync + 'a>;
-
-/// How much water there is.
-pub enum Filling<'a> {
-    /// Depth, m; a cell holds its mean times the cell's area.
-    Depth(OfPosition<'a, f64>),
-    /// Level, m; a cell holds its mean less the mean ground, so that a level lake is level.
-    Level(OfPosition<'a, f64>),
-}
-
-/// Water that is there at the start.
-pub struct StartWater<'a> {
-    /// How much.
-    pub filling: Filling<'a>,
-    /// Only inside this polygon of corners in model coordinates, m: a cell that it cuts holds the part inside. None: everywhere.
-    pub polygon: Option<Vec<[f64; 2]>>,
-    /// Velocity `[east, north]`, m/s.
-    pub velocity: OfPosition<'a, [f64; 2]>,
-}
-
-/// The bodies of water that a scene fills at the start (blocks in the air apart).
-pub(crate) fn of_scene<'a>(
-    scene: &Settings,
-    terrain: &'a Terrain,
-    folder: &Path,
-) -> Result<Vec<StartWater<'a>>, ModelError> {
-    fields::check(scene, terrain)?;
-    let standing = scene.water.iter().enumerate().filter(|(_, water)| water.block.is_none());
-    standing.map(|(number, water)| body(water, number, terrain, folder)).collect()
-}
-
-fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -> Result<StartWater<'a>, ModelError> {
-    let filling = if let Some(level) = &water.level_m {
-        Filling::Level(fields::of_position(level, terrain))
-    } else if let Some(depth) = &water.depth_m {
-        Filling::Depth(fields::of_position(depth, terrain))
-    } else if let Some(path) = &water.depth_raster {
-        let raster = RasterField::open(folder.join(path), terrain).map_err(setup)?;
-        Filling::Depth(Box::new(move |x, y| raster.bilinear(x, y).filter(|depth| depth.is_finite()).unwrap_or(0.0)))
-    } else {
-        return Err(setup(format!("flood.water.{number} says neither level, depth, raster nor block")));
-    };
-    let corners = |polygon: &Vec<[f64; 2]>| polygon.iter().map(|&corner| terrain.to_model(corner)).collect();
-    let velocity = fields::velocity(&water.velocity_m_per_s, terrain, folder)?;
-    Ok(StartWater { filling, polygon: water.polygon.as_ref().map(corners), velocity })
-}
 
 impl StartWater<'_> {
-    /// Whether there may be water near a position: in a cell about `reach` m wide round it.
-    pub(crate) fn may_be_at(&self, [x, y]: [f64; 2], ground: f64, reach: f64) -> bool {
-        if let Some(polygon) = &self.polygon
-            && !is_inside(polygon, x, y)
-            && distance_to(polygon, [x, y]) > reach
-        {
-            return false;
-        }
-        match &self.filling {
-            Filling::Depth(depth) => depth(x, y) > 0.0,
-            Filling::Level(level) => level(x, y) > ground,
-        }
-    }
-
     /// The water of this body in a cell, whose convex parts have corners in model coordinates.
     pub(crate) fn column(&self, mesh: &Mesh, cell: usize, parts: &[Vec<[f64; 2]>], scratch: &mut Clip) -> Column {
         let area = mesh.area[cell];
@@ -186,33 +124,16 @@ impl Clip {
     }
 }
 
-/// Distance of a position from the outline of a polygon, m.
-fn distance_to(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
-    let from_side = |k: usize| {
-        let [a, b] = [polygon[k], polygon[(k + 1) % polygon.len()]];
-        let along = [b[0] - a[0], b[1] - a[1]];
-        let to = [x - a[0], y - a[1]];
-        let part = (to[0] * along[0] + to[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]).max(1e-300);
-        let part = part.clamp(0.0, 1.0);
-        (to[0] - part * along[0]).hypot(to[1] - part * along[1])
-    };
-    (0..polygon.len()).map(from_side).fold(f64::INFINITY, f64::min)
-}
-
 /// Refuses a polygon that lies wholly outside the terrain.
-pub(crate) fn check_polygons(scene: &Settings, terrain: &Terrain) -> Result<(), ModelError> {
-    let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
+pub(crate) fn check_polygons(scene: &Flood, terrain: &Terrain) -> Result<(), ModelError> {
     for (number, water) in scene.water.iter().enumerate() {
         let Some(polygon) = &water.polygon else { continue };
         let corners: Vec<[f64; 2]> = polygon.iter().map(|&corner| terrain.to_model(corner)).collect();
-        let beyond = |axis: usize, low: f64, high: f64| {
-            corners.iter().all(|corner| corner[axis] < low) || corners.iter().all(|corner| corner[axis] > high)
-        };
-        if beyond(0, x_min, x_max) || beyond(1, y_min, y_max) {
+        if is_beside(&corners, terrain.bounds(), 0.0) {
             return Err(setup(format!(
                 "flood.water.{number}.polygon lies wholly outside the terrain, which spans {}: give its corners in the \
                  terrain's own coordinates",
-                crate::limits::span(terrain)
+                span(terrain)
             )));
         }
     }

@@ -1,12 +1,12 @@
 //! Discharge through culverts and over weirs.
 
-use corpuscle_scene::{Culvert as CulvertScene, Table, Weir as WeirScene};
+use corpuscle_scene::{Table, Weir};
 
 /// How much water a link leads.
 #[derive(Debug, Clone)]
 pub(crate) enum Law {
     Culvert(Culvert),
-    Weir(WeirScene),
+    Weir(Weir),
     /// Discharge, m3/s, over the difference of the levels, m.
     Rating(Table),
 }
@@ -55,7 +55,7 @@ pub(crate) const SUBMERGENCE_EXPONENT: f64 = 0.385;
 
 /// Poleni's formula Q = C b h1^(3/2), less what the water behind the crest holds back: (1 - (h2/h1)^(3/2))^0.385 (Villemonte
 /// 1947).
-pub(crate) fn over_weir(weir: &WeirScene, upper: f64, lower: Option<f64>) -> f64 {
+pub(crate) fn over_weir(weir: &Weir, upper: f64, lower: Option<f64>) -> f64 {
     let head = (upper - weir.crest_m).max(0.0);
     let behind = (lower.unwrap_or(f64::NEG_INFINITY) - weir.crest_m).clamp(0.0, head);
     if head == 0.0 {
@@ -67,7 +67,7 @@ pub(crate) fn over_weir(weir: &WeirScene, upper: f64, lower: Option<f64>) -> f64
 
 impl Culvert {
     /// A culvert between two ends `distance` m apart on ground of the given levels, m.
-    pub fn new(scene: &CulvertScene, distance: f64, ground: [f64; 2]) -> Self {
+    pub fn new(scene: &corpuscle_scene::Culvert, distance: f64, ground: [f64; 2]) -> Self {
         let (height, area, perimeter) = match (scene.diameter_m, scene.width_m, scene.height_m) {
             (None, Some(width), Some(height)) => (height, width * height, 2.0 * (width + height)),
             (diameter, ..) => {
@@ -146,7 +146,7 @@ mod tests {
     const G: f64 = 9.81;
 
     fn pipe(length: f64) -> Culvert {
-        let scene: CulvertScene = CulvertScene {
+        let scene: corpuscle_scene::Culvert = corpuscle_scene::Culvert {
             diameter_m: Some(1.0),
             width_m: None,
             height_m: None,
@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_weir_drowns_as_villemonte_says() {
-        let weir = WeirScene { crest_m: 5.0, width_m: 3.0, coefficient: 1.8 };
+        let weir = Weir { crest_m: 5.0, width_m: 3.0, coefficient: 1.8 };
         let law = Law::Weir(weir);
         let free = 1.8 * 3.0 * 0.4_f64.powf(1.5);
         assert!((law.discharge(5.4, Some(4.0), [0, 1], G) - free).abs() < 1e-12);

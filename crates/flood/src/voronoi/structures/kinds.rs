@@ -1,11 +1,12 @@
 //! What lets water out by a rating, holds it at a level, or leads it from one point to another.
 
 use super::hydraulics::{Culvert, Law};
-use crate::limits::check_inside;
-use crate::setup::{load, setup};
+use crate::error::setup;
+use crate::extent::check_inside;
+use crate::series::load;
 use crate::zone::Zone;
 use corpuscle_model::{GaugeColumn, ModelError};
-use corpuscle_scene::{Flood as Settings, Link as LinkScene, LinkLaw, Series, Table};
+use corpuscle_scene::{Flood, LinkLaw, Series, Table};
 use corpuscle_terrain::Terrain;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -68,15 +69,15 @@ pub(crate) struct Flows {
 }
 
 impl Structures {
-    pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path, spacing: f64) -> Result<Self, ModelError> {
+    pub fn open(scene: &Flood, terrain: &Terrain, folder: &Path, spacing: f64) -> Result<Self, ModelError> {
         let zone = |what: &str, line: &Option<Vec<[f64; 2]>>, polygon: &Option<Vec<[f64; 2]>>, at: Option<[f64; 2]>| {
-            let places = line.iter().chain(polygon).flatten().copied().chain(at).collect::<Vec<_>>();
-            check_inside(what, &places, terrain)?;
-            let places: Vec<_> = places.into_iter().map(|place| terrain.to_model(place)).collect();
+            let positions = line.iter().chain(polygon).flatten().copied().chain(at).collect::<Vec<_>>();
+            check_inside(what, &positions, terrain)?;
+            let positions: Vec<_> = positions.into_iter().map(|position| terrain.to_model(position)).collect();
             Ok(match (line, polygon) {
-                (Some(_), _) => Zone::along(places, 0.0, 2.0 * spacing),
-                (_, Some(_)) => Zone::Polygon(places),
-                _ => Zone::at(places[0], 0.0, spacing),
+                (Some(_), _) => Zone::along(positions, 0.0, 2.0 * spacing),
+                (_, Some(_)) => Zone::Polygon(positions),
+                _ => Zone::at(positions[0], 0.0, spacing),
             })
         };
         let outflow = |outflow: &corpuscle_scene::Outflow| {
@@ -89,20 +90,20 @@ impl Structures {
             let zone = zone(&format!("the stage '{}'", stage.name), &stage.line, &stage.polygon, None)?;
             Ok(Held { zone, level: load(&stage.level_m, folder)? })
         };
-        let link = |link: &LinkScene| {
+        let link = |link: &corpuscle_scene::Link| {
             check_inside(&format!("the link '{}'", link.name), &[link.from, link.to], terrain)?;
-            let places = [link.from, link.to].map(|place| terrain.to_model(place));
-            let [from, to] = places;
+            let positions = [link.from, link.to].map(|position| terrain.to_model(position));
+            let [from, to] = positions;
             let distance = (to[0] - from[0]).hypot(to[1] - from[1]);
             let law = match &link.law {
                 LinkLaw::Culvert(culvert) => {
-                    let ground = places.map(|[x, y]| terrain.height(x, y));
+                    let ground = positions.map(|[x, y]| terrain.height(x, y));
                     Law::Culvert(Culvert::new(culvert, distance, ground))
                 }
                 LinkLaw::Weir(weir) => Law::Weir(weir.clone()),
                 LinkLaw::Rating(rows) => Law::Rating(load(&Series::Table(rows.clone()), folder)?),
             };
-            let ends = places.map(|place| Zone::at(place, 0.0, spacing));
+            let ends = positions.map(|position| Zone::at(position, 0.0, spacing));
             if distance < ends.iter().map(Zone::reach).sum() {
                 return Err(setup(format!(
                     "the ends of the link '{}' are {distance:.3} m apart and take their water from {:.3} m round them: move \

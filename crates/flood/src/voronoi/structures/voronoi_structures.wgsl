@@ -14,8 +14,8 @@ fn combine(a: Reduced, b: Reduced) -> Reduced {
 }
 
 // Adds water to a cell of a patch; the change.
-fn apply(place: InPatch, volume: vec2f, momentum: vec2f) -> vec4f {
-    let before = columns[place.cell];
+fn apply(entry: InPatch, volume: vec2f, momentum: vec2f) -> vec4f {
+    let before = columns[entry.cell];
     var column = before;
     column.volume = tidy(add_pair(before.volume, volume));
     if column.volume.x < 0.0 {
@@ -23,10 +23,10 @@ fn apply(place: InPatch, volume: vec2f, momentum: vec2f) -> vec4f {
     }
     column.momentum += momentum;
     let gained = tidy(add_pair(column.volume, -before.volume));
-    let energy = energy_gained(place.cell, before, column, place.area, place.bed);
-    column.momentum = bounded_momentum(column.momentum, column.volume.x, place.area);
-    columns[place.cell] = column;
-    water[place.cell] = water_in(place.cell, column, place.area);
+    let energy = energy_gained(entry.cell, before, column, entry.area, entry.bed);
+    column.momentum = bounded_momentum(column.momentum, column.volume.x, entry.area);
+    columns[entry.cell] = column;
+    water[entry.cell] = water_in(entry.cell, column, entry.area);
     return vec4f(gained, energy, momentum.x + momentum.y);
 }
 
@@ -34,10 +34,10 @@ fn apply(place: InPatch, volume: vec2f, momentum: vec2f) -> vec4f {
 fn level_of(thread: u32, own: Structure, end: u32) -> f32 {
     var sums = vec4f(0.0);
     for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
-        let place = in_patches[k];
-        let depth = water[place.cell].depth;
+        let entry = in_patches[k];
+        let depth = water[entry.cell].depth;
         if depth > 0.0 {
-            sums += place.area * depth * vec4f(0.0, 0.0, 1.0, place.above + depth + water[place.cell].shift);
+            sums += entry.area * depth * vec4f(0.0, 0.0, 1.0, entry.above + depth + water[entry.cell].shift);
         }
     }
     sums = reduce_group(thread, sums);
@@ -68,9 +68,9 @@ fn take(thread: u32, own: Structure, end: u32, wanted: f32) -> vec4f {
 fn give(thread: u32, own: Structure, end: u32, volume: vec2f) -> vec4f {
     var change = vec4f(0.0);
     for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
-        let place = in_patches[k];
-        let part = opaque(volume.x * (place.area / own.areas[end]));
-        change = combine(change, apply(place, vec2f(part, 0.0), vec2f(0.0)));
+        let entry = in_patches[k];
+        let part = opaque(volume.x * (entry.area / own.areas[end]));
+        change = combine(change, apply(entry, vec2f(part, 0.0), vec2f(0.0)));
     }
     var all = reduce_group(thread, change);
     var rest = vec4f(0.0);
@@ -86,10 +86,10 @@ fn hold(thread: u32, own: Structure) -> vec4f {
     let level = in_step(own.table, AT_BEGINNING + 1u);
     var change = vec4f(0.0);
     for (var k = own.firsts[0] + thread; k < own.ends[0]; k += GROUP) {
-        let place = in_patches[k];
-        let wanted = place.area * depth_below(place.cell, level - place.above);
-        let volume = tidy(add_pair(vec2f(wanted, 0.0), -columns[place.cell].volume));
-        change = combine(change, apply(place, volume, volume.x * water[place.cell].velocity));
+        let entry = in_patches[k];
+        let wanted = entry.area * depth_below(entry.cell, level - entry.above);
+        let volume = tidy(add_pair(vec2f(wanted, 0.0), -columns[entry.cell].volume));
+        change = combine(change, apply(entry, volume, volume.x * water[entry.cell].velocity));
     }
     return reduce_group(thread, change);
 }

@@ -128,7 +128,7 @@ impl Wall {
         dx.hypot(dy)
     }
 
-    /// How far along it the place nearest to a position is: 0 at the first end, 1 at the second.
+    /// How far along it the point nearest to a position is: 0 at the first end, 1 at the second.
     fn nearest(&self, at: [f64; 2]) -> f64 {
         let [a, b] = self.ends;
         let along = [b[0] - a[0], b[1] - a[1]];

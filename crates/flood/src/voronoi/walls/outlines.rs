@@ -1,13 +1,10 @@
 //! Where walls come from: outlines of obstacles, and of ground without data.
 
 use super::{Wall, WallKind};
-use crate::obstacles::{Outline, check_overlap, side_within, surroundings};
+use crate::obstacles::{Line, Outline, check_overlap, lines, side_within, surroundings};
 use corpuscle_model::ModelError;
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
-
-/// Most parts of a side of a line.
-const MOST_PARTS: f64 = 1e5;
 
 /// The sides of outlines; no water flows over them.
 pub(crate) fn of_outlines(outlines: &[Outline]) -> impl Iterator<Item = Wall> {
@@ -22,42 +19,16 @@ pub(crate) fn of_outlines(outlines: &[Outline]) -> impl Iterator<Item = Wall> {
 ///
 /// # Errors
 /// [`ModelError::Setup`] for one that lies outside the terrain.
-pub(crate) fn of_lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Result<Vec<Wall>, ModelError> {
-    let mut walls = Vec::new();
-    let far = surroundings(terrain, spacing);
-    for (number, obstacle) in scene.obstacle.iter().enumerate() {
-        let Some(line) = &obstacle.line else { continue };
-        let line: Vec<[f64; 2]> = line.iter().map(|corner| terrain.to_model(*corner)).collect();
-        check_overlap(&format!("the obstacle '{}'", obstacle.name), &line, terrain)?;
-        let crest = |[x, y]: [f64; 2]| match (obstacle.crest_m, obstacle.height_m) {
-            (Some(level), _) => level,
-            (None, Some(height)) => terrain.height(x, y) + height,
-            (None, None) => f64::INFINITY,
-        };
-        for [a, b] in line.windows(2).filter_map(|side| side_within([side[0], side[1]], far)) {
-            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-            let parts =
-                if obstacle.height_m.is_some() { (length / spacing).ceil().clamp(1.0, MOST_PARTS) } else { 1.0 };
-            let at = |part: usize| {
-                if part as f64 == parts {
-                    return b;
-                }
-                [0, 1].map(|axis| a[axis] + part as f64 / parts * (b[axis] - a[axis]))
-            };
-            walls.extend((0..parts as usize).map(|part| {
-                let ends = [at(part), at(part + 1)];
-                Wall { ends, kind: WallKind::Obstacle(number as u32), crest: ends.map(crest) }
-            }));
-        }
-    }
-    Ok(walls)
+pub(crate) fn of_lines(scene: &Flood, terrain: &Terrain, spacing: f64) -> Result<Vec<Wall>, ModelError> {
+    let wall = |line: Line| Wall { ends: line.ends, kind: WallKind::Obstacle(line.obstacle as u32), crest: line.crest };
+    Ok(lines(scene, terrain, spacing)?.into_iter().map(wall).collect())
 }
 
 /// The lines inside the terrain at which water enters or leaves.
 ///
 /// # Errors
 /// [`ModelError::Setup`] for one that lies outside the terrain.
-pub(crate) fn of_sides(scene: &Settings, terrain: &Terrain) -> Result<Vec<Wall>, ModelError> {
+pub(crate) fn of_sides(scene: &Flood, terrain: &Terrain) -> Result<Vec<Wall>, ModelError> {
     let mut walls = Vec::new();
     let far = surroundings(terrain, 0.0);
     for (number, side) in scene.edge_line.iter().enumerate() {
@@ -76,7 +47,7 @@ pub(crate) fn no_data(terrain: &Terrain) -> Vec<Wall> {
     let (columns, rows) = (grid.columns, grid.rows);
     let mut walls = Vec::new();
     let mut add = |from: [usize; 2], to: [usize; 2]| {
-        let corner = |[column, row]: [usize; 2]| grid.place([column as f64 - 0.5, row as f64 - 0.5]);
+        let corner = |[column, row]: [usize; 2]| grid.point([column as f64 - 0.5, row as f64 - 0.5]);
         walls.push(Wall { ends: [corner(from), corner(to)], kind: WallKind::Plain, crest: [f64::INFINITY; 2] });
     };
     // Sides between a row and the next, then between a column and the next.

@@ -1,7 +1,7 @@
 //! Roofs: rain on an obstacle runs off over its edge.
 
 use crate::obstacles::Outline;
-use crate::setup::is_inside;
+use crate::polygon::is_inside;
 use crate::voronoi::domain::{Domain, total};
 use crate::voronoi::mesh::Mesh;
 use crate::voronoi::start::Clip;

@@ -8,7 +8,7 @@ use crate::device::{rounding, sized};
 use crate::{Case, Options, Row};
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Adaptive, Edge, Flood as Settings};
+use corpuscle_scene::{Adaptive, Edge, Flood};
 use std::f64::consts::TAU;
 
 pub(in super::super) const ADAPTIVE: Case = Case {
@@ -49,9 +49,9 @@ fn measure() -> Result<Vec<Row>, ModelError> {
 }
 
 /// Settings with cells that become `finest_m` m wide.
-fn adaptive(finest_m: f64, settings: Settings) -> Settings {
+fn adaptive(finest_m: f64, settings: Flood) -> Flood {
     let adaptive = Some(Adaptive { finest_m: sized(finest_m), ..Adaptive::default() });
-    Settings { adaptive, wet_depth_m: WET, ..settings }
+    Flood { adaptive, wet_depth_m: WET, ..settings }
 }
 
 fn water_error(flood: &VoronoiFlood) -> f64 {
@@ -78,7 +78,7 @@ fn bowls(seed: u64) -> Result<[f64; 3], ModelError> {
     let (exact, time): (Exact, f64) = (plane, 2.0 * TAU / omega());
     let even = settings(finest, 0.0, all_sides(&Edge::Wall));
     let fine = swing_with(&even, exact, time, seed)?;
-    let flood = swing_with(&adaptive(finest, Settings { spacing_m: Some(sized(wide)), ..even }), exact, time, seed)?;
+    let flood = swing_with(&adaptive(finest, Flood { spacing_m: Some(sized(wide)), ..even }), exact, time, seed)?;
     let work = flood.particle_steps() as f64 / fine.particle_steps() as f64;
     Ok([error(&flood, exact, time) / error(&fine, exact, time), work, water_error(&flood)])
 }

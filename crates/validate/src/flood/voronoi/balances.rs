@@ -8,8 +8,7 @@ use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{
-    Culvert, Edge, Edges, Flood as Settings, GreenAmpt, Infiltration, Inflow, Link, LinkLaw, Outflow, Rain, Series,
-    Stage, Weir,
+    Culvert, Edge, Edges, Flood, GreenAmpt, Infiltration, Inflow, Link, LinkLaw, Outflow, Rain, Series, Stage, Weir,
 };
 use corpuscle_terrain::{Bounds, Terrain};
 use std::f64::consts::TAU;
@@ -146,7 +145,7 @@ fn everything(seed: u64) -> Result<VoronoiFlood, ModelError> {
         barrels: 1,
     };
     let link = |name: &str, from, to, law| Link { name: name.into(), from, to, both_ways: true, law };
-    let settings = Settings {
+    let settings = Flood {
         rain: Some(Rain { intensity_mm_per_h: Series::Constant(200.0), raster: None }),
         infiltration: Some(Infiltration::GreenAmpt(ground)),
         inflow: vec![Inflow {

@@ -6,7 +6,7 @@ use super::{advance, set_up, settings, worst};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Series, Wave};
+use corpuscle_scene::{Edge, Edges, Flood, Series, Wave};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -120,13 +120,13 @@ impl Solitary {
     }
 
     /// Settings for particles `spacing` depths apart, with Manning's n.
-    fn settings(&self, spacing: f64, manning: f64) -> Settings {
+    fn settings(&self, spacing: f64, manning: f64) -> Flood {
         let edges = Edges { west: Edge::Wall, east: Edge::Open, south: Edge::Periodic, north: Edge::Periodic };
         settings(spacing * self.depth, manning, edges)
     }
 
     /// The wave at its start with settings.
-    fn begin_with(&self, land: f64, settings: &Settings, seed: u64) -> Result<VoronoiFlood, ModelError> {
+    fn begin_with(&self, land: f64, settings: &Flood, seed: u64) -> Result<VoronoiFlood, ModelError> {
         let spacing = settings.spacing_m.unwrap_or(1.0) / self.depth;
         let wave = *self;
         let water = StartWater {
@@ -166,7 +166,7 @@ fn shoreline(flood: &VoronoiFlood, wave: &Solitary, spacing: f64, land: f64, dry
 /// Relative error of the highest run-up of the canonical wave over particles `spacing` depths apart, with settings that `adapted` makes of those of the case; and
 /// the flood.
 pub(super) fn run_up(
-    adapted: impl FnOnce(Settings) -> Settings,
+    adapted: impl FnOnce(Flood) -> Flood,
     spacing: f64,
     seed: u64,
 ) -> Result<(f64, VoronoiFlood), ModelError> {

@@ -6,7 +6,7 @@ use crate::device::{rounding, sized};
 use crate::{Case, Options};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edge, Finer, Flood as Settings};
+use corpuscle_scene::{Edge, Finer, Flood};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::ops::Range;
 use std::sync::Arc;
@@ -90,7 +90,7 @@ fn measure_finer() -> Result<Vec<crate::Row>, ModelError> {
         ..Finer::default()
     };
     let [below, above, water] = worst(|seed| {
-        let graded = dam(TIME, &Settings { finer: vec![part.clone()], ..even(4.0) }, seed, 4.0, 1.0)?;
+        let graded = dam(TIME, &Flood { finer: vec![part.clone()], ..even(4.0) }, seed, 4.0, 1.0)?;
         let coarse = dam(TIME, &even(4.0), seed, 4.0, 1.0)?;
         let of = |flood: &VoronoiFlood, range| error_within(flood, 4.0, 1.0, range);
         let (below, above) = (DAM as usize..LENGTH as usize, 0..DAM as usize);
@@ -117,12 +117,12 @@ pub(in super::super) fn broken(
 }
 
 /// Cells of one size.
-fn even(spacing: f64) -> Settings {
+fn even(spacing: f64) -> Flood {
     settings(spacing, 0.0, strip(&Edge::Wall))
 }
 
 /// The dam break at a time, s, in a channel [`WIDTH`] times `spacing` m wide.
-fn dam(time: f64, settings: &Settings, seed: u64, spacing: f64, downstream: f64) -> Result<VoronoiFlood, ModelError> {
+fn dam(time: f64, settings: &Flood, seed: u64, spacing: f64, downstream: f64) -> Result<VoronoiFlood, ModelError> {
     let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: WIDTH * spacing };
     let terrain = Arc::new(Terrain::analytic(bounds, spacing, |_, _| (0.0, [0.0; 2])));
     let pool = |depth: f64, from: f64, to: f64| StartWater {

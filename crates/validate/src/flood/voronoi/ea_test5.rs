@@ -7,7 +7,7 @@ use super::{set_up, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::{ChartSeries, ChartStyle, Model, ModelError};
-use corpuscle_scene::{Edges, Flood as Settings, Gauge, Inflow, NoData, Series, Terrain as TerrainScene, TerrainFile};
+use corpuscle_scene::{Edges, Flood, Gauge, Inflow, NoData, Series, TerrainFile};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ const MEASURES: [[&str; 2]; 7] = [
 
 fn of_seed(folder: &Path, seed: u64, options: &Options) -> Result<Vec<Row>, ModelError> {
     let ground = TerrainFile { path: folder.join("dem-10m.tif"), crs: None, no_data: NoData::Wall };
-    let terrain = Terrain::open(&TerrainScene::File(ground), seed, folder);
+    let terrain = Terrain::open(&corpuscle_scene::Terrain::File(ground), seed, folder);
     let terrain = Arc::new(terrain.map_err(|error| ModelError::Setup(error.to_string()))?);
     compare(&mut set_up(&valley(folder)?, seed, &terrain, &[])?, folder, options)
 }
@@ -78,7 +78,7 @@ fn compare(flood: &mut VoronoiFlood, folder: &Path, options: &Options) -> Result
 }
 
 /// The flood of the benchmark: inflow and gauges.
-fn valley(folder: &Path) -> Result<Settings, ModelError> {
+fn valley(folder: &Path) -> Result<Flood, ModelError> {
     let mut settings = settings(SPACING, 0.04, Edges::default());
     let line = table(&folder.join("inflow-line.csv"), 1)?;
     let discharge = table(&folder.join("inflow.csv"), 2)?;

@@ -5,7 +5,7 @@ use super::{all_sides, run, settings, worst};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edge, Flood as Settings, GreenAmpt, Horton, Infiltration};
+use corpuscle_scene::{Edge, Flood, GreenAmpt, Horton, Infiltration};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
 fn lost(law: Infiltration, seed: u64) -> Result<f64, ModelError> {
     let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: WIDTH };
     let terrain = Arc::new(Terrain::analytic(bounds, 1.0, |_, _| (0.0, [0.0; 2])));
-    let settings = Settings { infiltration: Some(law), ..settings(2.0, 0.03, all_sides(&Edge::Wall)) };
+    let settings = Flood { infiltration: Some(law), ..settings(2.0, 0.03, all_sides(&Edge::Wall)) };
     let water = StartWater {
         filling: Filling::Level(Box::new(|x, _| 0.3 + 0.1 * (std::f64::consts::PI * x / LENGTH).cos())),
         polygon: None,

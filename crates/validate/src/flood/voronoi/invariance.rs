@@ -6,7 +6,7 @@ use super::{all_sides, run, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Flood as Settings};
+use corpuscle_scene::{Edge, Flood};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
 
@@ -74,7 +74,7 @@ impl Turned {
         };
         let water = [pool(10.0, -1e3, 0.0), pool(1.0, 0.0, 1e3)];
         let settings = settings(2.0 * unit, 0.0, all_sides(&Edge::Wall));
-        let settings = Settings { gravity_m_per_s2: unit * GRAVITY, ..settings };
+        let settings = Flood { gravity_m_per_s2: unit * GRAVITY, ..settings };
         let flood = run(&settings, seed, &terrain, &water, TIME)?;
         let fallen = 0.5 * GRAVITY * FALL * TIME * TIME;
         let (mut wrong, mut right) = (0.0, 0.0);

@@ -7,7 +7,7 @@ use super::{set_up, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Gauge, Obstacle};
+use corpuscle_scene::{Edge, Edges, Flood, Gauge, Obstacle};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -84,7 +84,7 @@ fn compare(flood: &mut VoronoiFlood, folder: &Path, options: &Options) -> Result
 }
 
 /// The flume with its gate's walls, the building and its gauges.
-fn flume(folder: &Path) -> Result<Settings, ModelError> {
+fn flume(folder: &Path) -> Result<Flood, ModelError> {
     let edges = Edges { west: Edge::Wall, east: Edge::Open, south: Edge::Wall, north: Edge::Wall };
     let mut settings = settings(SPACING, 0.01, edges);
     let obstacle = |name: &str| Obstacle {

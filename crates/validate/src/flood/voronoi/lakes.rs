@@ -7,7 +7,7 @@ use crate::device::{is_reduced, reduced, reduction, rounding};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edge, NoData, Terrain as TerrainScene, TerrainFile};
+use corpuscle_scene::{Edge, NoData, TerrainFile};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -123,7 +123,7 @@ fn islands() -> Result<Vec<Row>, ModelError> {
 
 fn file(path: &Path) -> Result<Arc<Terrain>, ModelError> {
     let ground = TerrainFile { path: path.into(), crs: None, no_data: NoData::Wall };
-    let terrain = Terrain::open(&TerrainScene::File(ground), 0, Path::new("."));
+    let terrain = Terrain::open(&corpuscle_scene::Terrain::File(ground), 0, Path::new("."));
     terrain.map(Arc::new).map_err(|error| ModelError::Setup(error.to_string()))
 }
 

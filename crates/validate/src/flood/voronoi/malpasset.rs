@@ -7,7 +7,7 @@ use crate::flood::rows;
 use crate::{Case, Options, Row};
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edges, Gauge, NoData, Terrain as TerrainScene, TerrainFile, Water};
+use corpuscle_scene::{Edges, Gauge, NoData, TerrainFile, Water};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -107,8 +107,8 @@ fn run<'a>(
     let raster = folder.join("initial-depth-20m.tif");
     settings.water = vec![Water { depth_raster: Some(raster), ..Water::default() }];
     let ground = TerrainFile { path: folder.join("bed-20m.tif"), crs: None, no_data: NoData::Wall };
-    let terrain =
-        Terrain::open(&TerrainScene::File(ground), seed, folder).map_err(|e| ModelError::Setup(e.to_string()))?;
+    let terrain = Terrain::open(&corpuscle_scene::Terrain::File(ground), seed, folder)
+        .map_err(|e| ModelError::Setup(e.to_string()))?;
     let count = settings.gauge.len();
     let mut flood = ready(VoronoiFlood::new(&settings, seed, folder, Arc::new(terrain))?)?;
     let (highest, arrival) = watch(&mut flood, count)?;

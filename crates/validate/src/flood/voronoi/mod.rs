@@ -52,7 +52,7 @@ use crate::Row;
 use crate::device::{reduced, sized};
 use corpuscle_flood::{StartWater, VoronoiFlood};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning};
+use corpuscle_scene::{Edge, Edges, Flood, Manning};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -62,15 +62,15 @@ use std::sync::atomic::AtomicBool;
 const SEEDS: [u64; 3] = [1, 2, 3];
 
 /// Settings with a spacing, m, Manning's n and edges.
-fn settings(spacing_m: f64, manning: f64, edges: Edges) -> Settings {
-    Settings {
+fn settings(spacing_m: f64, manning: f64, edges: Edges) -> Flood {
+    Flood {
         spacing_m: Some(sized(spacing_m)),
         gravity_m_per_s2: GRAVITY,
         manning: Manning::Number(manning),
         // Maps are not used; frames show all that moves.
         wet_depth_m: 1e-6,
         edges,
-        ..Settings::default()
+        ..Flood::default()
     }
 }
 
@@ -80,7 +80,7 @@ fn all_sides(edge: &Edge) -> Edges {
 }
 
 fn set_up(
-    settings: &Settings,
+    settings: &Flood,
     seed: u64,
     terrain: &Arc<Terrain>,
     water: &[StartWater],
@@ -95,7 +95,7 @@ fn advance(flood: &mut VoronoiFlood, time: f64) -> Result<(), ModelError> {
 
 /// A flood that was set up and ran to `time` s.
 fn run(
-    settings: &Settings,
+    settings: &Flood,
     seed: u64,
     terrain: &Arc<Terrain>,
     water: &[StartWater],

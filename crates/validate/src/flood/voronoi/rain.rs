@@ -4,7 +4,7 @@ use super::super::{order, rows, strip};
 use super::{advance, cells, set_up, settings, worst};
 use crate::{Case, Options, Row};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Rain, Series, Storage};
+use corpuscle_scene::{Edge, Edges, Flood, Rain, Series, Storage};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
 
@@ -81,7 +81,7 @@ pub(super) fn hydrograph(spacing: f64, seed: u64, storage: Storage) -> Result<[f
     let series = Series::Table(vec![[0.0, mm_per_h], [RAINS, mm_per_h], [RAINS + 1e-6, 0.0]]);
     let rain = Some(Rain { intensity_mm_per_h: series, raster: None });
     let edges = Edges { west: Edge::Wall, ..strip(&Edge::Open) };
-    let settings = Settings { rain, storage, wet_depth_m: 1e-9, ..settings(spacing, MANNING, edges) };
+    let settings = Flood { rain, storage, wet_depth_m: 1e-9, ..settings(spacing, MANNING, edges) };
     let mut flood = set_up(&settings, seed, &terrain, &[])?;
     let whole = WIDTH * LENGTH * INTENSITY;
     // What is on the plane at the time shown, which is not that of the ledger.

@@ -8,7 +8,7 @@ use super::{all_sides, run, settings, worst};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Flood as Settings, Storage};
+use corpuscle_scene::{Edge, Flood, Storage};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -52,7 +52,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
 /// The error in a bowl over that with cells of level ground.
 fn share(seed: u64, exact: Exact, time: f64) -> Result<f64, ModelError> {
     let of = |storage: Storage| {
-        let settings = Settings { storage, ..settings(0.04, 0.0, all_sides(&Edge::Wall)) };
+        let settings = Flood { storage, ..settings(0.04, 0.0, all_sides(&Edge::Wall)) };
         Ok::<f64, ModelError>(error(&swing_with(&settings, exact, time, seed)?, exact, time))
     };
     Ok(of(Storage::LevelVolume)? / of(Storage::Mean)?)
@@ -78,7 +78,7 @@ fn wrong_volume(seed: u64, spacing: f64, storage: Storage) -> Result<f64, ModelE
         polygon: Some(vec![[0.0, 0.0], [0.45 * SIDE, 0.0], [0.45 * SIDE, SIDE], [0.0, SIDE]]),
         velocity: Box::new(|_, _| [0.0; 2]),
     };
-    let settings = Settings { storage, ..settings(spacing, 0.1, all_sides(&Edge::Wall)) };
+    let settings = Flood { storage, ..settings(spacing, 0.1, all_sides(&Edge::Wall)) };
     let flood = run(&settings, seed, &terrain, &[water], 1200.0)?;
     let volume: f64 = flood.wet_cells().map(|cell| cell.area * cell.depth).sum();
     // The level of the lake: that of its deepest cells.

@@ -5,7 +5,7 @@ use super::{advance, all_sides, set_up, settings, worst};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Flood as Settings, Link, LinkLaw, Obstacle, Outflow, Weir};
+use corpuscle_scene::{Edge, Flood, Link, LinkLaw, Obstacle, Outflow, Weir};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
 
@@ -51,7 +51,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
 }
 
 /// A weir from the middle of one pool to that of the other.
-fn over_weir(settings: &mut Settings) {
+fn over_weir(settings: &mut Flood) {
     let middle = 0.5 * SIDE;
     settings.link = vec![Link {
         name: "weir".into(),
@@ -69,7 +69,7 @@ fn over(upper: f64, lower: f64) -> f64 {
 }
 
 /// An outflow along a line across the first pool, of 2 m2/s times the level.
-fn out_of_first(settings: &mut Settings) {
+fn out_of_first(settings: &mut Flood) {
     settings.outflow = vec![Outflow {
         name: "sluice".into(),
         at: None,
@@ -85,7 +85,7 @@ fn passed(
     seed: u64,
     depths: [f64; 2],
     time: f64,
-    change: fn(&mut Settings),
+    change: fn(&mut Flood),
     discharge: fn(f64, f64) -> f64,
 ) -> Result<f64, ModelError> {
     let bounds = Bounds { x_min: 0.0, x_max: 2.0 * SIDE + WALL, y_min: 0.0, y_max: SIDE };

@@ -5,7 +5,7 @@ use super::{Convergence, all_sides, run, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Flood as Settings};
+use corpuscle_scene::{Edge, Flood};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -98,7 +98,7 @@ pub(super) fn swing(exact: Exact, time: f64, spacing: f64, seed: u64) -> Result<
 }
 
 /// The same with settings.
-pub(super) fn swing_with(settings: &Settings, exact: Exact, time: f64, seed: u64) -> Result<VoronoiFlood, ModelError> {
+pub(super) fn swing_with(settings: &Flood, exact: Exact, time: f64, seed: u64) -> Result<VoronoiFlood, ModelError> {
     let terrain = bowl();
     let depth = |x: f64, y: f64| exact(x, y, 0.0).0 - terrain.height(x, y);
     let water = StartWater {

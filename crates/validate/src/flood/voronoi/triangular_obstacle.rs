@@ -7,7 +7,7 @@ use super::{all_sides, set_up, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edge, Flood as Settings, Gauge};
+use corpuscle_scene::{Edge, Flood, Gauge};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -100,7 +100,7 @@ fn compare(flood: &mut VoronoiFlood, folder: &Path, options: &Options) -> Result
 }
 
 /// The channel, closed at both ends: behind the sill the measured water stays as high as its crest.
-fn channel() -> Settings {
+fn channel() -> Flood {
     let mut settings = settings(SPACING, 0.0125, all_sides(&Edge::Wall));
     let gauge = |station: &Station| Gauge {
         name: station.file.into(),

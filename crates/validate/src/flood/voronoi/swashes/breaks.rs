@@ -5,7 +5,7 @@ use super::super::{run, settings};
 use super::{Profile, WIDTH};
 use corpuscle_flood::{Filling, StartWater};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Flood as Settings, Friction};
+use corpuscle_scene::{Edge, Flood, Friction};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -37,7 +37,7 @@ impl Dam {
         if self.depths[1] > 0.0 {
             water.push(pool(self.depths[1], 0.5 * length, 2.0 * length));
         }
-        let settings = Settings { friction: self.friction, ..settings(spacing, 0.0, strip(&Edge::Wall)) };
+        let settings = Flood { friction: self.friction, ..settings(spacing, 0.0, strip(&Edge::Wall)) };
         let terrain = Arc::new(self.terrain(bounds, spacing));
         let flood = run(&settings, seed, &terrain, &water, self.time)?;
         Ok(profile.error_of(|x, y| flood.sample(x, y).depth, width))
@@ -88,7 +88,7 @@ pub(super) fn lake(path: &Path, spacing: f64, seed: u64) -> Result<f64, ModelErr
     let water =
         StartWater { filling: Filling::Level(Box::new(level)), polygon: None, velocity: Box::new(|_, _| [0.0; 2]) };
     let friction = Some(Friction::Linear(0.05));
-    let settings = Settings { friction, ..settings(spacing, 0.0, strip(&Edge::Wall)) };
+    let settings = Flood { friction, ..settings(spacing, 0.0, strip(&Edge::Wall)) };
     let flood = run(&settings, seed, &terrain, &[water], 100.0)?;
     Ok(profile.error_of(|x, y| flood.sample(x, y).depth, width))
 }

@@ -5,7 +5,7 @@ use super::super::{advance, cells, set_up, settings};
 use super::{Profile, WIDTH};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Friction, Series, Wave};
+use corpuscle_scene::{Edge, Edges, Flood, Friction, Series, Wave};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -63,7 +63,7 @@ impl Channel {
         self.discharge + self.rain * length
     }
 
-    fn settings(&self, terrain: &Terrain, bounds: Bounds, spacing: f64) -> Settings {
+    fn settings(&self, terrain: &Terrain, bounds: Bounds, spacing: f64) -> Flood {
         let [beginning, end] = [bounds.x_min, bounds.x_max].map(|x| terrain.height(x, 0.5 * bounds.y_max));
         let constant = |value: f64| Some(Series::Constant(value));
         let west = match self.supercritical {
@@ -157,7 +157,7 @@ pub(super) fn mobile_rain(path: &Path, spacing: f64, seed: u64) -> Result<f64, M
         velocity: Box::new(|_, _| [8.0, 0.0]),
     };
     let settings =
-        Settings { friction: Some(Friction::Linear(0.01125)), ..settings(spacing, 0.0, strip(&Edge::Periodic)) };
+        Flood { friction: Some(Friction::Linear(0.01125)), ..settings(spacing, 0.0, strip(&Edge::Periodic)) };
     let mut flood = set_up(&settings, seed, &terrain, &[water])?;
     flood.rain(Box::new(mobile_rain_at))?;
     advance(&mut flood, 500.0)?;
