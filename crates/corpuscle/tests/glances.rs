@@ -58,7 +58,7 @@ impl Sink for Album {
                 let from = particles.origin;
                 let position = |position: [f32; 3]| std::array::from_fn(|axis| from[axis] + f64::from(position[axis]));
                 let all = particles.read(gpu).unwrap();
-                all.iter().map(|particle| (u64::from(particle.id), position(particle.place))).collect()
+                all.iter().map(|particle| (u64::from(particle.id), position(particle.position))).collect()
             }
             _ => positions(&glance.frame, "drops"),
         };

@@ -35,8 +35,8 @@ pub(crate) struct Link {
 }
 
 /// What is odd about the links of a scene, in sentences: a culvert much shorter than the way it bridges would lose too little head.
-pub(crate) fn warn_of_links(scene: &Settings, terrain: &Terrain) -> Vec<String> {
-    let odd = |link: &LinkScene| {
+pub(crate) fn warn_of_links(scene: &Flood, terrain: &Terrain) -> Vec<String> {
+    let odd = |link: &corpuscle_scene::Link| {
         let LinkLaw::Culvert(culvert) = &link.law else { return None };
         let [from, to] = [link.from, link.to].map(|point| terrain.to_model(point));
         let distance = (to[0] - from[0]).hypot(to[1] - from[1]);
