@@ -58,7 +58,7 @@ impl Sink for Album {
                 let from = particles.origin;
                 let place = |place: [f32; 3]| std::array::from_fn(|axis| from[axis] + f64::from(place[axis]));
                 let all = particles.read(gpu).unwrap();
-                all.iter().map(|particle| (u64::from(particle.id), place(particle.place))).collect()
+                all.iter().map(|particle| (u64::from(particle.id), place(particle.position))).collect()
             }
             _ => places(&glance.frame, "drops"),
         };
