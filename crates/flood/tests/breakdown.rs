@@ -89,7 +89,7 @@ fn no_particle_at_the_start_is_without_water() {
 }
 
 #[test]
-fn a_velocity_that_is_no_number_is_refused_at_the_start_with_its_place() {
+fn a_velocity_that_is_no_number_is_refused_at_the_start_with_its_position() {
     let error = with_water(|_, _| 1.0, |x, _| if x > 100.0 { f64::NAN } else { 0.0 }, 1).err().unwrap();
     let text = told(&error);
     let x: f64 = text.split("x = ").nth(1).unwrap().split(',').next().unwrap().parse().unwrap();

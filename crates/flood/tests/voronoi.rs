@@ -378,7 +378,7 @@ fn changes_while_it_runs_hold_and_are_restored() {
 }
 
 #[test]
-fn bad_places_are_refused_in_words() {
+fn bad_positions_are_refused_in_words() {
     let outside = basin(
         &format!("spacing_m = 2\n{WALLS}inflow = [{{ name = \"far\", at = [200, 15], discharge_m3_per_s = 1 }}]"),
         1,

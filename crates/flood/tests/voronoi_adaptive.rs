@@ -345,7 +345,7 @@ fn what_cannot_follow_the_water_is_told() {
 
 /// What comes in by an inflow comes in at its position, and what a held level takes goes from its own, whatever becomes of the cells.
 #[test]
-fn inflows_and_held_levels_stay_in_their_places() {
+fn inflows_and_held_levels_keep_their_positions() {
     let keys = format!(
         "{BY_HAND}{WALLS}[[flood.inflow]]\nname = \"spring\"\nat = [70, 40]\ndischarge_m3_per_s = 1\n\
          [[flood.stage]]\nname = \"lake\"\npolygon = [[10, 10], [22, 10], [22, 22], [10, 22]]\nlevel_m = 0.5\n"
