@@ -2,7 +2,7 @@
 
 use crate::air::{Particle, Properties, Scale};
 use crate::domain::Domain;
-use crate::room::Room;
+use crate::room::{InflowsOverTime, Room};
 use crate::settings::Settings;
 use crate::solids::{Solids, Surface};
 use crate::state::State;
@@ -16,6 +16,8 @@ pub(crate) struct Inventory<'a> {
     pub air: &'a Properties,
     /// The box.
     pub room: &'a Room,
+    /// The air that comes in where it changes with time.
+    pub inflows: &'a InflowsOverTime,
     /// Size of particles.
     pub scale: &'a Scale,
     /// The solids.

@@ -1,5 +1,6 @@
 //! The box that the air is in, and what its faces do.
 
+use corpuscle_scene::Table;
 use serde::{Deserialize, Serialize};
 
 /// What happens at a face of the room.
@@ -34,6 +35,25 @@ pub struct Inflow {
     /// Part of the mass that is vapour.
     pub vapour: f64,
 }
+
+/// Air as it comes in over time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct InflowOverTime {
+    /// Temperature, K.
+    pub temperature: Table,
+    /// Part of the mass that is vapour.
+    pub vapour: Table,
+}
+
+impl InflowOverTime {
+    /// Temperature, K, and vapour, part of the mass, at a time.
+    pub fn at(&self, time: f64) -> [f64; 2] {
+        [self.temperature.at(time), self.vapour.at(time)]
+    }
+}
+
+/// What comes in by each face where that changes with time, at low and high x, y and z.
+pub(crate) type InflowsOverTime = [[Option<InflowOverTime>; 2]; 3];
 
 /// A box with its six faces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -123,6 +123,11 @@ corpuscle_gpu::declare! {
             pub vapour: f32,
             /// Where a new layer stands, m beyond the face.
             pub behind: f32,
+            /// Where its temperatures over time begin and end among the values, and its vapour; none where they do not change.
+            pub temperature_first: u32,
+            pub temperature_end: u32,
+            pub vapour_first: u32,
+            pub vapour_end: u32,
             /// Fills up.
             pub unused: [f32; 2],
         }

@@ -2,7 +2,7 @@
 
 use crate::air::{Particle, Role};
 use crate::fan::Fan;
-use crate::room::Room;
+use crate::room::{InflowsOverTime, Room};
 use crate::settings::Settings;
 use crate::solids::sources::BodySources;
 use corpuscle_model::{Account, CompensatedSum, ExactSum};
@@ -60,6 +60,8 @@ impl State {
 pub(crate) struct Overrides {
     /// The box, with what its faces do.
     pub room: Room,
+    /// What comes in where it changes with time.
+    pub inflows: InflowsOverTime,
     /// The fans.
     pub fans: Vec<Fan>,
     /// How the model works.

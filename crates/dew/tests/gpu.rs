@@ -524,6 +524,37 @@ fn totals_go_as_on_the_cpu() {
     }
 }
 
+/// Air that comes in ever warmer and with a jump of its humidity, in three steps of the GPU's batches and more.
+#[test]
+fn air_that_comes_in_over_time_does_so_as_on_the_cpu() {
+    let Some(gpu) = require_gpu("air that changes with time on the GPU") else { return };
+    let open = || {
+        let text = "run.until_s = 1\n[dew]\nsize_m = [0.03, 0.012, 0.012]\nspacing_m = 0.003\n\
+            air = { temperature_c = 20, relative_humidity = 0.4, velocity_m_per_s = [0.097, 0, 0] }\n\
+            [dew.faces]\ny_min = \"periodic\"\ny_max = \"periodic\"\nx_max = \"outflow\"\n\
+            [dew.faces.x_min.inflow]\nvelocity_m_per_s = [0.097, 0, 0]\ntemperature_c = [[0, 20], [0.5, 30]]\n\
+            relative_humidity = [[0, 0.4], [0.22, 0.4], [0.22, 0.7], [0.5, 0.5]]\n";
+        let scene = Scene::parse(text, "test", &[]).unwrap();
+        corpuscle_dew::open(scene.dew().unwrap(), 1, Path::new("")).unwrap()
+    };
+    let (mut host, mut device) = (open(), on_gpu(open(), &gpu));
+    advance(&mut host, 0.3);
+    let time = host.time() + 0.5 * host.time_step();
+    advance(&mut device, time);
+    assert_eq!(host.steps(), device.steps());
+    for (host, device) in host.ledger().balances.iter().zip(device.ledger().balances) {
+        let both = [(host.inflow, device.inflow), (host.outflow, device.outflow), (host.now, device.now)];
+        assert!(both.iter().all(|&(a, b)| near(a, b, 1e-5)), "{host:?} and {device:?}");
+    }
+    let (host, device) = (by_id(&host), by_id(&device));
+    assert_eq!(host.len(), device.len());
+    let warmest = host.iter().map(|particle| particle.temperature).fold(0.0, f64::max);
+    assert!(warmest > 20.0 + ZERO_CELSIUS + 5.0, "{warmest}");
+    for (a, b) in host.iter().zip(&device) {
+        assert!((a.temperature - b.temperature).abs() < 1e-2 && (a.vapour - b.vapour).abs() < 1e-5, "{a:?} and {b:?}");
+    }
+}
+
 /// The bits of the air and of the solids, and the time.
 fn bits(dew: &Dew) -> Vec<u64> {
     let air = by_id(dew);

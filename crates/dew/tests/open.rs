@@ -3,7 +3,9 @@
 mod common;
 
 use common::{advance, gauge};
-use corpuscle_dew::{Dew, open};
+use corpuscle_dew::air::Role;
+use corpuscle_dew::humid_air::HumidAir;
+use corpuscle_dew::{Dew, LiveChange, open};
 use corpuscle_model::{Model, Values};
 use corpuscle_scene::Scene;
 use std::path::Path;
@@ -213,4 +215,76 @@ fn drops_too_small_for_the_surface_are_refused_with_a_radius_that_works() {
     dew(&text(&format!("smallest_radius_m = {}", 4.0 * works)));
     // Left out, it is as large as the surface needs.
     dew(&text("friction = 1e-6").replace(", friction = 1e-7", ""));
+}
+
+/// A pulse of vapour that comes in by a side, strongest 0.3 s after the start: as much comes in as its integral says, half of it by then, and it passes
+/// through the box as fast as the air.
+#[test]
+fn air_that_comes_in_changes_with_time() {
+    let text = |keys: &str| {
+        format!(
+            "run.until_s = 1\n[dew]\nsize_m = [0.06, 0.012, 0.012]\nspacing_m = 0.003\nbuoyancy = false\n\
+             air = {{ temperature_c = 20, relative_humidity = 0.0, velocity_m_per_s = [0.1, 0, 0] }}\n\
+             [dew.faces]\ny_min = \"periodic\"\ny_max = \"periodic\"\nz_min = \"periodic\"\nz_max = \"periodic\"\nx_max = \"outflow\"\n\
+             x_min = {{ inflow = {{ velocity_m_per_s = [0.1, 0, 0], {keys} }} }}\n"
+        )
+    };
+    let pulse = "relative_humidity = [[0, 0], [0.2, 0], [0.3, 0.8], [0.4, 0]]";
+    let mut channel = dew(&text(pulse));
+    let saturated = HumidAir::with_relative_humidity(293.15, 101_325.0, 0.8);
+    // Mean of the pulse over 0.2 s is half of its peak.
+    let whole = HumidAir::with_relative_humidity(293.15, 101_325.0, 0.0).density()
+        * 0.1
+        * 0.012_f64.powi(2)
+        * (0.5 * 0.2 * saturated.mass_fraction());
+    let mut came = |time: f64| {
+        advance(&mut channel, time);
+        channel.ledger().balances[0].inflow / whole
+    };
+    let parts = [came(0.19), came(0.3), came(0.45)];
+    assert!(parts[0] < 0.02 && (parts[1] - 0.5).abs() < 0.25 && (parts[2] - 1.0).abs() < 0.05, "{parts:?}");
+    // Where it is then: the peak has gone 0.015 m a 0.15 s.
+    let air = channel.air().iter().filter(|particle| particle.role == Role::Inside);
+    let (water, moment) = air.fold((0.0, 0.0), |(water, moment), particle| {
+        (water + particle.vapour, moment + particle.vapour * particle.position[0])
+    });
+    assert!((moment / water / 0.015 - 1.0).abs() < 0.15, "{} m", moment / water);
+
+    // As warm as it comes in, whatever it is at the start; and what cannot be is refused with its time.
+    let mut warm = dew(&text("temperature_c = [[0, 20], [0.1, 20], [0.1, 30]]"));
+    advance(&mut warm, 0.6);
+    let first = warm.air().iter().filter(|particle| particle.role == Role::Inside && particle.position[0] < 0.02);
+    let celsius: Vec<f64> = first.map(|particle| particle.temperature - 273.15).collect();
+    assert!(celsius.len() > 50 && celsius.iter().all(|celsius| (celsius - 30.0).abs() < 0.1), "{celsius:?}");
+    let told = refused(&text("temperature_c = [[0, 30], [5, 5]], mixing_ratio = 0.01"));
+    assert!(
+        told.contains("dew.faces.x_min.inflow.mixing_ratio: at") && told.contains("relative humidity of"),
+        "{told}"
+    );
+    let told = refused(&text("relative_humidity = { csv = \"missing.csv\" }"));
+    assert!(told.contains("dew.faces.x_min.inflow.relative_humidity") && told.contains("missing.csv"), "{told}");
+}
+
+/// What comes in over time stays so when the wind changes; what is changed live takes its place, also in a state that is taken up.
+#[test]
+fn a_live_change_ends_what_comes_in_over_time() {
+    let text = PANE.replace(
+        "{ inflow = { velocity_m_per_s = [0, 0, -0.05] } }",
+        "{ inflow = { velocity_m_per_s = [0, 0, -0.05], temperature_c = [[0, 25], [10, 45]] } }",
+    );
+    let coming = |dew: &Dew| {
+        let newest = dew.air().iter().max_by_key(|particle| particle.id).unwrap();
+        newest.temperature - 273.15
+    };
+    let mut pane = dew(&text);
+    LiveChange::Wind { face: [2, 1], axis: 2, velocity: -0.1 }.change(&mut pane).unwrap();
+    advance(&mut pane, 0.2);
+    assert!((25.3..26.5).contains(&coming(&pane)), "{}", coming(&pane));
+    LiveChange::InletTemperature { face: [2, 1], celsius: 28.0 }.change(&mut pane).unwrap();
+    advance(&mut pane, 0.4);
+    assert!((coming(&pane) - 28.0).abs() < 1e-9, "{}", coming(&pane));
+    let mut again = dew(&text);
+    again.restore(&pane.save()).unwrap();
+    advance(&mut again, 0.5);
+    assert!((coming(&again) - 28.0).abs() < 1e-9, "{}", coming(&again));
 }

@@ -282,10 +282,10 @@ fn full_dew() -> Scene {
     };
     let inflow = Face::Inflow(AirInflow {
         velocity_m_per_s: [1.0; 3],
-        temperature_c: Some(1.0),
-        relative_humidity: Some(0.5),
-        dew_point_c: Some(1.0),
-        mixing_ratio: Some(0.5),
+        temperature_c: Some(Series::Constant(1.0)),
+        relative_humidity: Some(Series::Constant(0.5)),
+        dew_point_c: Some(Series::Constant(1.0)),
+        mixing_ratio: Some(Series::Constant(0.5)),
     });
     let own = Material::Own { conductivity_w_per_m_k: 1.0, heat_capacity_j_per_kg_k: 1.0, density_kg_per_m3: 1.0 };
     let shapes = [

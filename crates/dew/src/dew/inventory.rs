@@ -11,6 +11,7 @@ impl Dew {
             settings: &self.settings,
             air: &self.air,
             room: &self.room,
+            inflows: &self.inflows,
             scale: &self.scale,
             solids: &self.solids,
             surfaces: &self.surfaces,

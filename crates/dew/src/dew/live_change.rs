@@ -128,12 +128,16 @@ impl Dew {
         match change {
             LiveChange::SolidTemperature { solid, celsius } => self.bring_to(solid, celsius)?,
             LiveChange::InletTemperature { face, celsius } => {
+                self.end_inflow_over_time(face);
                 self.change_inlet(face, |inflow, _| inflow.temperature = celsius + ZERO_CELSIUS)?;
             }
-            LiveChange::InletHumidity { face, relative } => self.change_inlet(face, |inflow, pressure| {
-                let air = HumidAir::with_relative_humidity(inflow.temperature, pressure, relative);
-                inflow.vapour = air.mass_fraction();
-            })?,
+            LiveChange::InletHumidity { face, relative } => {
+                self.end_inflow_over_time(face);
+                self.change_inlet(face, |inflow, pressure| {
+                    let air = HumidAir::with_relative_humidity(inflow.temperature, pressure, relative);
+                    inflow.vapour = air.mass_fraction();
+                })?;
+            }
             LiveChange::Wind { face, axis, velocity } => {
                 let inward = [1.0, -1.0][face[1].min(1)];
                 if axis == face[0] && inward * velocity <= 0.0 {
@@ -183,6 +187,14 @@ impl Dew {
         Ok(())
     }
 
+    /// From now on the air that comes in by a face is as it is now.
+    fn end_inflow_over_time(&mut self, [axis, side]: [usize; 2]) {
+        let ended = self.inflows.get_mut(axis).and_then(|sides| sides.get_mut(side)).and_then(Option::take);
+        if let (Some(ended), Face::Inlet(inflow)) = (ended, &mut self.room.faces[axis][side]) {
+            [inflow.temperature, inflow.vapour] = ended.at(self.state.time);
+        }
+    }
+
     /// Changes the air that comes in, and that which stands before the inlet.
     fn change_inlet(&mut self, [axis, side]: [usize; 2], change: impl Fn(&mut Inflow, f64)) -> Result<(), ModelError> {
         let pressure = self.air.pressure;
@@ -191,9 +203,12 @@ impl Dew {
         };
         change(inflow, pressure);
         let inflow = *inflow;
+        // Air of the velocity alone changes: what comes in over time stays so.
+        let now = self.inflows[axis][side].as_ref().map(|own| own.at(self.state.time));
+        let [temperature, vapour] = now.unwrap_or([inflow.temperature, inflow.vapour]);
         let coming = crate::air::Role::Coming(axis as u8, side as u8);
         for particle in self.state.air.iter_mut().filter(|particle| particle.role == coming) {
-            (particle.temperature, particle.vapour) = (inflow.temperature, inflow.vapour);
+            (particle.temperature, particle.vapour) = (temperature, vapour);
             particle.velocity = inflow.velocity;
         }
         Ok(())
@@ -247,6 +262,7 @@ impl Dew {
     fn as_it_is(&self) -> Overrides {
         Overrides {
             room: self.room,
+            inflows: self.inflows.clone(),
             fans: self.fans.clone(),
             settings: self.settings,
             sound_speed: self.air.sound_speed,
@@ -263,6 +279,7 @@ impl Dew {
             self.as_set_up = Some(self.as_it_is());
         }
         (self.room, self.fans, self.settings) = (overrides.room, overrides.fans, overrides.settings);
+        self.inflows = overrides.inflows;
         self.air.sound_speed = overrides.sound_speed;
         self.held_to = overrides.held_to;
         self.sources.bodies = overrides.sources;

@@ -27,7 +27,7 @@ use crate::fan::Fan;
 use crate::humid_air;
 use crate::layer::Layer;
 use crate::normalisation::Tensor;
-use crate::room::{Face, Room};
+use crate::room::{Face, InflowsOverTime, Room};
 use crate::settings::Settings;
 use crate::solids::contact::Contact;
 use crate::solids::sources::HeatSources;
@@ -84,6 +84,8 @@ pub struct Dew {
     /// The surfaces of the bodies; none where one has none.
     pub(crate) surfaces: Vec<Surface>,
     pub(crate) fans: Vec<Fan>,
+    /// The air that comes in where it changes with time.
+    pub(crate) inflows: InflowsOverTime,
     /// The sides of the room by which air comes and goes.
     pub(crate) open_sides: Vec<OpenSide>,
     /// The drops on the solids, where water there forms any.
@@ -211,6 +213,7 @@ impl Dew {
             surfaces: bodies.iter().map(|body| body.surface.clone()).collect::<Option<_>>().unwrap_or_default(),
             open_sides: Vec::new(),
             fans: fans.clone(),
+            inflows: Default::default(),
             wetting: None,
             buoyant: true,
             as_set_up: None,

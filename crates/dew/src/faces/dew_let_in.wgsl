@@ -1,6 +1,7 @@
 // What air beyond outlets is faster and denser by, and new layers of air before inlets; one group. Twin of `faces/inlet.rs`, and of
 // `before_outlet` and `update_outlet_pressure` in `faces/mod.rs`.
 #import dew_particles
+#import dew_rows
 #import group_reduction
 
 alias Reduced = BeforeOutlet;
@@ -20,12 +21,19 @@ fn mean_before(number: u32, count: u32, thread: u32) -> vec3f {
     return vec3f(all.near.xy / max(all.near.z, 1.0), all.nearest.x / max(all.nearest.y, 1.0));
 }
 
-// A layer of air `behind` an inlet, its particles numbered from `first`.
+// A layer of air `behind` an inlet, of the air that comes in when the layer reaches the face, its particles numbered from `first`.
 fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
     let inlet = parameters.inlets[number];
     let axis = number / 2u;
     let a = (axis + 1u) % 3u;
     let b = (axis + 2u) % 3u;
+    var warmth = inlet.temperature;
+    var vapour = inlet.vapour;
+    if inlet.temperature_first < inlet.temperature_end {
+        let reached = add(status.time, status.step + behind / abs(inlet.velocity[axis]));
+        warmth = value_at(inlet.temperature_first, inlet.temperature_end, reached);
+        vapour = value_at(inlet.vapour_first, inlet.vapour_end, reached);
+    }
     let columns = parameters.counts[a];
     let all = columns * parameters.counts[b];
     for (var k = thread; k < all; k += GROUP) {
@@ -34,8 +42,8 @@ fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
         particle.position[a] = parameters.low[a] + (f32(k % columns) + 0.5) * parameters.apart[a];
         particle.position[b] = parameters.low[b] + (f32(k / columns) + 0.5) * parameters.apart[b];
         particle.velocity = inlet.velocity;
-        particle.temperature = vec2f(inlet.temperature, 0.0);
-        particle.vapour = vec2f(inlet.vapour, 0.0);
+        particle.temperature = vec2f(warmth, 0.0);
+        particle.vapour = vec2f(vapour, 0.0);
         particle.id = first_id + k;
         particle.role = COMING | (number << FACE_BITS);
         if first + k < arrayLength(&particles) {

@@ -17,7 +17,7 @@ impl Inventory<'_> {
         }
     }
 
-    /// Adds a layer before an inlet as soon as there is room for it.
+    /// Adds a layer before an inlet as soon as there is room for it: of the air that comes in when the layer reaches the face.
     fn add_layers(&mut self, axis: usize, side: usize, inflow: Inflow, step: f64) {
         let counts = self.room.counts(self.scale.spacing);
         let apart = self.room.apart(self.scale.spacing);
@@ -25,6 +25,9 @@ impl Inventory<'_> {
         while self.state.inlet_phase[axis][side] >= apart[axis] {
             self.state.inlet_phase[axis][side] -= apart[axis];
             let behind = before_inlet(self.scale.h(), apart[axis]) - self.state.inlet_phase[axis][side];
+            let reached = self.state.time + step + behind / inflow.velocity[axis].abs();
+            let over_time = self.inflows[axis][side].as_ref();
+            let [temperature, vapour] = over_time.map_or([inflow.temperature, inflow.vapour], |own| own.at(reached));
             let others = [(axis + 1) % 3, (axis + 2) % 3];
             for b in 0..counts[others[1]] {
                 for a in 0..counts[others[0]] {
@@ -33,7 +36,7 @@ impl Inventory<'_> {
                     for (other, index) in others.into_iter().zip([a, b]) {
                         position[other] = self.room.low[other] + (index as f64 + 0.5) * apart[other];
                     }
-                    let particle = Particle::new(self.state.next_id, position, inflow.temperature, inflow.vapour);
+                    let particle = Particle::new(self.state.next_id, position, temperature, vapour);
                     self.state.next_id += 1;
                     if self.owns(position) {
                         self.state.air.push(placed(particle, self.room, slowest(self.air)));

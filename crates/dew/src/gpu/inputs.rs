@@ -3,7 +3,7 @@
 use crate::air::{Properties, Scale};
 use crate::faces::OpenSide;
 use crate::fan::Fan;
-use crate::room::Room;
+use crate::room::{InflowsOverTime, Room};
 use crate::settings::Settings;
 use crate::solids::Surface;
 use crate::solids::sources::HeatSources;
@@ -17,6 +17,8 @@ pub(crate) struct GpuInputs<'a> {
     pub air: &'a Properties,
     /// The box.
     pub room: &'a Room,
+    /// The air that comes in where it changes with time.
+    pub inflows: &'a InflowsOverTime,
     /// Size of particles.
     pub scale: &'a Scale,
     /// The solids.

@@ -20,6 +20,7 @@ pub(crate) use tasks::pieces;
 
 use crate::faces::OpenSide;
 use crate::origin::Origin;
+use crate::room::InflowsOverTime;
 use crate::shared::{self, OutsideColumn, Parameters, Status, TURN};
 use crate::solids::sources::upload::GpuSources;
 use crate::solids::upload::GpuSolids;
@@ -29,6 +30,7 @@ use bytemuck::Zeroable;
 use corpuscle_gpu::{
     BATCH_START, Batches, Gpu, GpuError, Halt, SeenParticles, from_halves, from_pair, read, to_pair, wgpu,
 };
+use corpuscle_scene::Table;
 use corpuscle_sph::kernel::Kernel;
 use tasks::Tasks;
 
@@ -112,6 +114,20 @@ fn outside_column(&is_free: &bool) -> OutsideColumn {
     OutsideColumn { is_free: u32::from(is_free), ..OutsideColumn::default() }
 }
 
+/// Appends what comes in over time to the values, from the ambient air's, and tells the inlets where it is.
+fn append_inflows(inflows: &InflowsOverTime, origin: Origin, parameters: &mut Parameters, rows: &mut Vec<[f64; 2]>) {
+    let mut append = |table: &Table, zero: f64| {
+        let first = rows.len() as u32;
+        rows.extend(table.rows().iter().map(|&[time, value]| [time, value - zero]));
+        [first, rows.len() as u32]
+    };
+    for (inlet, inflow) in parameters.inlets.iter_mut().zip(inflows.as_flattened()) {
+        let Some(inflow) = inflow else { continue };
+        [inlet.temperature_first, inlet.temperature_end] = append(&inflow.temperature, origin.temperature);
+        [inlet.vapour_first, inlet.vapour_end] = append(&inflow.vapour, origin.vapour);
+    }
+}
+
 impl GpuSolver {
     /// Room for `room` particles of air.
     pub fn new(gpu: Gpu, room: usize, inputs: &GpuInputs) -> Result<Self, GpuError> {
@@ -128,6 +144,7 @@ impl GpuSolver {
         let outside: Vec<OutsideColumn> =
             inputs.open_sides.iter().flat_map(OpenSide::free).map(outside_column).collect();
         let sources = GpuSources::new(inputs.sources, origin, &mut rows);
+        append_inflows(inputs.inflows, origin, &mut parameters, &mut rows);
         let fans = numbers::gpu_fans(inputs, origin);
         let (bodies, of_solids) = (solids.bodies.clone(), solids.count);
         let kernel = Kernel::<3>::device_piece(inputs.settings.kernel);

@@ -142,7 +142,7 @@ impl Parameters {
                     temperature: (inflow.temperature - inputs.settings.ambient_temperature) as f32,
                     vapour: (inflow.vapour - inputs.settings.ambient_vapour) as f32,
                     behind: crate::faces::before_inlet(inputs.scale.h(), apart) as f32,
-                    unused: [0.0; 2],
+                    ..Inlet::default()
                 };
             }
         }

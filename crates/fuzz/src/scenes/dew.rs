@@ -1,11 +1,11 @@
 //! Scenes of dew.
 
 use super::Maker;
-use corpuscle_scene::KernelName;
 use corpuscle_scene::dew::{
     Air, AirInflow, Boundary, Dew, Drops, Face, Faces, Fan, Heater, HumidityTransport, LowUtility, Material, Mean,
     Output, Outside, Radiation, Scheme, Shape, Side, Solid, SolidFace, Transport, Treatment, WallLayer,
 };
+use corpuscle_scene::{KernelName, Series};
 
 /// Humid air of some hundred particles, with one or two solids.
 pub(super) fn scene(maker: &mut Maker<'_>) -> String {
@@ -82,10 +82,14 @@ fn faces(maker: &mut Maker<'_>) -> Faces {
             let ratio = maker.between(0.0, 0.002);
             let inflow = AirInflow {
                 velocity_m_per_s: std::array::from_fn(|k| if k == axis { inwards * speed } else { 0.0 }),
-                temperature_c: maker.maybe(0.5, |maker| maker.between(0.0, 40.0)),
-                relative_humidity: (by == 1).then_some(relative),
-                dew_point_c: (by == 2).then_some(-below),
-                mixing_ratio: (by == 3).then_some(ratio),
+                temperature_c: maker.maybe(0.5, |maker| {
+                    let (celsius, later) = (maker.between(0.0, 40.0), maker.between(0.0, 40.0));
+                    let changes = maker.has(0.3);
+                    if changes { Series::Table(vec![[0.0, celsius], [0.02, later]]) } else { Series::Constant(celsius) }
+                }),
+                relative_humidity: (by == 1).then_some(Series::Constant(relative)),
+                dew_point_c: (by == 2).then_some(Series::Constant(-below)),
+                mixing_ratio: (by == 3).then_some(Series::Constant(ratio)),
             };
             let kind = maker.random.below(4);
             let is_other = maker.has(0.25);

@@ -1,6 +1,6 @@
 //! The sides of the box.
 
-use crate::Axis;
+use crate::{Axis, Series};
 use serde::{Deserialize, Serialize};
 
 /// The sides of the box, each at the smallest or largest coordinate along an axis.
@@ -49,22 +49,33 @@ pub enum Face {
     Inflow(AirInflow),
 }
 
-/// Air that comes in. What is left out is as in the air at the start; give at most one measure of humidity.
+/// Air that comes in. What is left out is as in the air at the start; give at most one measure of humidity. All but the velocity may change with time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AirInflow {
     /// Its velocity, m/s; into the box.
     pub velocity_m_per_s: [f64; 3],
-    /// Its temperature, °C.
+    /// Its temperature, °C, over time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub temperature_c: Option<f64>,
+    pub temperature_c: Option<Series>,
     /// Vapour pressure over that of saturation, from 0 to 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub relative_humidity: Option<f64>,
+    pub relative_humidity: Option<Series>,
     /// Temperature at which it would be saturated, °C.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dew_point_c: Option<f64>,
+    pub dew_point_c: Option<Series>,
     /// Mass of vapour over that of dry air.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mixing_ratio: Option<f64>,
+    pub mixing_ratio: Option<Series>,
+}
+
+impl AirInflow {
+    /// The files of what changes with time.
+    pub(crate) fn paths(&mut self) -> impl Iterator<Item = &mut std::path::PathBuf> {
+        let all = [&mut self.temperature_c, &mut self.relative_humidity, &mut self.dew_point_c, &mut self.mixing_ratio];
+        all.into_iter().flatten().filter_map(|series| match series {
+            Series::File { csv, .. } => Some(csv),
+            _ => None,
+        })
+    }
 }

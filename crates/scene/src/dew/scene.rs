@@ -1,6 +1,6 @@
 //! What dew adds to a scene.
 
-use super::{Dew, HumidityTransport, Mean, Scheme, Shape};
+use super::{Dew, Face, Faces, HumidityTransport, Mean, Scheme, Shape};
 use crate::check::{Check, Checked};
 use crate::{ModelScene, Run, Series};
 use std::path::PathBuf;
@@ -31,6 +31,12 @@ impl ModelScene for Dew {
             }
             if let Series::File { csv, .. } = &mut solid.temperature_c {
                 paths.push(csv);
+            }
+        }
+        let Faces { x_min, x_max, y_min, y_max, z_min, z_max } = &mut self.faces;
+        for face in [x_min, x_max, y_min, y_max, z_min, z_max] {
+            if let Face::Inflow(inflow) = face {
+                paths.extend(inflow.paths());
             }
         }
         paths

@@ -3,7 +3,7 @@
 use crate::parameters::{Builder, Change, Control, Current, live, number_in, size, size_as_written};
 use corpuscle_dew::{LiveChange, SourceChange as Source};
 use corpuscle_scene::dew::{self, AirInflow};
-use corpuscle_scene::{Axis, Dew};
+use corpuscle_scene::{Axis, Dew, Series};
 
 const SCHEMES: &[(&str, &str)] =
     &[("physical", "\"physical\""), ("particle condensation (as patented)", "\"particle-condensation\"")];
@@ -160,12 +160,19 @@ fn sources(builder: &mut Builder, solid: &dew::Solid, path: impl Fn(&str) -> Str
 fn inflowing(builder: &mut Builder, dew: &Dew, side: &str, inflow: &AirInflow) {
     let path = |key: &str| format!("dew.faces.{side}.inflow.{key}");
     let (warmth, humidity) = (path("temperature_c"), path("relative_humidity"));
-    let own = [inflow.relative_humidity, inflow.dew_point_c, inflow.mixing_ratio].into_iter().flatten().count();
+    let measures = [&inflow.relative_humidity, &inflow.dew_point_c, &inflow.mixing_ratio];
+    let own = measures.into_iter().flatten().count();
+    // What the scene changes over time is no number.
+    let changes =
+        |series: &Option<Series>| series.as_ref().is_some_and(|series| !matches!(series, Series::Constant(_)));
+    if changes(&inflow.temperature_c) || measures.into_iter().any(changes) {
+        return;
+    }
     builder.or(&warmth, dew.air.temperature_c);
     let hint = "Of the air that flows in here; its vapour is kept, or its relative humidity where that is given";
     builder.number(&*warmth, &format!("Temperature at {side}"), "°C", [0.0, 60.0], hint).live(&warmth, warm_inlet);
     if own == 0
-        && let (Some(relative), None) = (dew.air.relative_humidity, inflow.temperature_c)
+        && let (Some(relative), None) = (dew.air.relative_humidity, &inflow.temperature_c)
     {
         builder.or(&humidity, relative);
     }

@@ -125,6 +125,7 @@ impl Dew {
             settings: &self.settings,
             air: &self.air,
             room: &self.room,
+            inflows: &self.inflows,
             scale: &self.scale,
             solids,
             sources: &self.sources,

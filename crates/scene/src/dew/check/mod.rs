@@ -3,9 +3,9 @@
 mod heat;
 mod solids;
 
-use crate::Axis;
 use crate::check::{Check, Checked, SIDES};
 use crate::dew::{Air, AirInflow, Dew, Drops, Face, Fan, LowUtility, Transport, ZERO_CELSIUS};
+use crate::{Axis, Series};
 
 /// 0 K in °C.
 const ABSOLUTE_ZERO: f64 = -ZERO_CELSIUS;
@@ -128,12 +128,33 @@ impl Check {
         self.require(&format!("{key}.velocity_m_per_s"), speed > 0.0, || {
             "must lead into the box through this side".into()
         })?;
-        let humidity = [inflow.relative_humidity, inflow.dew_point_c, inflow.mixing_ratio];
+        let humidity = [&inflow.relative_humidity, &inflow.dew_point_c, &inflow.mixing_ratio];
         let given = humidity.iter().filter(|measure| measure.is_some()).count();
         self.require(key, given <= 1, || "give at most one of relative_humidity, dew_point_c and mixing_ratio".into())?;
-        let celsius = inflow.temperature_c.unwrap_or(air.temperature_c);
-        self.air_temperature(&format!("{key}.temperature_c"), celsius)?;
-        self.humidity(key, celsius, humidity)
+        let named = ["temperature_c", "relative_humidity", "dew_point_c", "mixing_ratio"];
+        for (name, series) in named.into_iter().zip([&inflow.temperature_c].into_iter().chain(humidity)) {
+            series.as_ref().map_or(Ok(()), |series| self.series(&format!("{key}.{name}"), series))?;
+        }
+        if let Some(temperature) = &inflow.temperature_c {
+            self.each_value(&format!("{key}.temperature_c"), temperature, |key, celsius| {
+                self.air_temperature(key, celsius)
+            })?;
+        }
+        // What changes with the temperature is compared with it when the scene is opened.
+        let celsius = match &inflow.temperature_c {
+            None => air.temperature_c,
+            Some(Series::Constant(celsius)) => *celsius,
+            Some(_) => WARMEST_AIR,
+        };
+        for (measure, series) in humidity.into_iter().enumerate() {
+            let Some(series) = series else { continue };
+            self.each_value(key, series, |_, value| {
+                let mut one = [None; 3];
+                one[measure] = Some(value);
+                self.humidity(key, celsius, one)
+            })?;
+        }
+        Ok(())
     }
 
     /// A fan stands in the box, is no thinner than the spacing resolves, and blows.

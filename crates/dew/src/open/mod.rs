@@ -1,5 +1,7 @@
 //! From a scene to a model.
 
+mod inflows;
+
 use crate::air::{LEAST_SOUND, Properties, SOUND_OVER_MOTION, TemperatureCoefficients};
 use crate::dew::{Dew, Setup};
 use crate::drops::{DropLaws, MOST_SITES, Retention, WATER_DENSITY, most_per_area, smallest_reach};
@@ -15,6 +17,7 @@ use corpuscle_processes::Processes;
 use corpuscle_scene::Axis;
 use corpuscle_scene::dew::{self as written, HumidityTransport, Scheme, Treatment};
 use corpuscle_solids::Solid;
+use inflows::Inflows;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -35,10 +38,15 @@ pub fn open_on(processes: &Processes, scene: &written::Dew, seed: u64, folder: &
     // A file may be missing for one of several processes only.
     let bodies = processes.agree(bodies::open(scene, folder).map_err(ModelError::from), ModelError::Setup)?;
     let start = humid_air(&scene.air);
-    check_mixing_ratios(scene, &start)?;
-    let room = room(scene, &start);
+    if scene.air.mixing_ratio.is_some() {
+        check_humidity("dew.air", &start)?;
+    }
+    // A file may be missing for one of several processes only.
+    let inflows =
+        processes.agree(Inflows::open(scene, &start, folder).map_err(ModelError::Setup), ModelError::Setup)?;
+    let room = room(scene, &inflows);
     refuse_solids_at_inlets(&bodies, &room, scene.spacing_m)?;
-    let air = properties(scene, &start, &room, &bodies);
+    let air = properties(scene, &start, &inflows, &bodies);
     let settings = settings(scene, &start);
     let particles = bodies.iter().map(|body| particles(body, &room)).collect();
     let setup = Setup { settings, air, room, bodies: particles, fans: scene.fan.iter().map(fan).collect(), seed };
@@ -53,6 +61,7 @@ pub fn open_on(processes: &Processes, scene: &written::Dew, seed: u64, folder: &
         body.walls.and_then(|_| Layer::new(body, &dew.room, dew.scale.spacing, [&dew.contact, &dew.ghosts]))
     };
     dew.layers = setup.bodies.iter().map(layer).collect();
+    dew.inflows = inflows.over_time();
     dew.names = bodies.iter().map(|body| body.name.clone()).collect();
     dew.add_walls(&bodies);
     dew.sources = HeatSources::new(&bodies, &dew.solids, &room, scene.spacing_m);
@@ -162,25 +171,6 @@ fn air_of(celsius: f64, pressure: f64, measures: [Option<f64>; 3]) -> Option<Hum
     relative.or(dew_point).or(mixing)
 }
 
-/// Refuses mixing ratios, at the start and of inflows, above that of saturated air.
-fn check_mixing_ratios(scene: &written::Dew, start: &HumidAir) -> Result<(), ModelError> {
-    if scene.air.mixing_ratio.is_some() {
-        check_humidity("dew.air", start)?;
-    }
-    for axis in Axis::ALL {
-        for (face, name) in scene.faces.along(axis).into_iter().zip(["min", "max"]) {
-            if let written::Face::Inflow(inflow) = face
-                && let Some(ratio) = inflow.mixing_ratio
-            {
-                let temperature = inflow.temperature_c.unwrap_or(scene.air.temperature_c) + ZERO_CELSIUS;
-                let air = HumidAir::with_mixing_ratio(temperature, start.pressure, ratio);
-                check_humidity(&format!("dew.faces.{}_{name}.inflow", ["x", "y", "z"][axis.index()]), &air)?;
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Refuses air that holds more vapour than saturated air: it would be fog already.
 fn check_humidity(key: &str, air: &HumidAir) -> Result<(), ModelError> {
     let humidity = air.relative_humidity();
@@ -201,31 +191,19 @@ fn humid_air(air: &written::Air) -> HumidAir {
     air_of(air.temperature_c, air.pressure_pa, measures).unwrap_or_else(dry)
 }
 
-fn room(scene: &written::Dew, start: &HumidAir) -> Room {
-    let faces = Axis::ALL.map(|axis| scene.faces.along(axis).map(|face| self::face(face, scene, start)));
-    Room { low: [0.0; 3], high: scene.size_m, faces }
-}
-
-fn face(face: &written::Face, scene: &written::Dew, start: &HumidAir) -> Face {
-    match face {
+fn room(scene: &written::Dew, inflows: &Inflows) -> Room {
+    let face = |axis: Axis, side: usize| match scene.faces.along(axis)[side] {
         written::Face::Wall => Face::Wall,
         written::Face::Periodic => Face::Periodic,
         written::Face::Open => Face::Open,
         written::Face::Outflow => Face::Outlet,
         written::Face::Inflow(inflow) => {
-            let celsius = inflow.temperature_c.unwrap_or(scene.air.temperature_c);
-            let measures = [inflow.relative_humidity, inflow.dew_point_c, inflow.mixing_ratio];
-            // Without a measure of its own it holds as much vapour as the air at the start.
-            let as_at_start =
-                || HumidAir::with_mass_fraction(celsius + ZERO_CELSIUS, start.pressure, start.mass_fraction());
-            let air = air_of(celsius, start.pressure, measures).unwrap_or_else(as_at_start);
-            Face::Inlet(Inflow {
-                velocity: inflow.velocity_m_per_s,
-                temperature: air.temperature,
-                vapour: air.mass_fraction(),
-            })
+            let [temperature, vapour] = inflows.at_start(axis, side);
+            Face::Inlet(Inflow { velocity: inflow.velocity_m_per_s, temperature, vapour })
         }
-    }
+    };
+    let faces = Axis::ALL.map(|axis| [0, 1].map(|side| face(axis, side)));
+    Room { low: [0.0; 3], high: scene.size_m, faces }
 }
 
 fn fan(fan: &written::Fan) -> Fan {
@@ -266,9 +244,9 @@ fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
     }
 }
 
-fn properties(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies::Body]) -> Properties {
+fn properties(scene: &written::Dew, start: &HumidAir, inflows: &Inflows, bodies: &[bodies::Body]) -> Properties {
     let transport = &scene.transport;
-    let sound = (SOUND_OVER_MOTION * fastest(scene, start, room, bodies)).max(LEAST_SOUND);
+    let sound = (SOUND_OVER_MOTION * fastest(scene, start, inflows, bodies)).max(LEAST_SOUND);
     let mut air = Properties::of(start, sound);
     if scene.scheme == Scheme::ParticleCondensation {
         air.coefficients = TemperatureCoefficients::default();
@@ -292,23 +270,19 @@ fn properties(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bod
 
 /// The fastest motion to come, m/s: that of the air at the start, at inlets and at fans, or the speed sqrt(g H dT/T) with which warm
 /// air would rise through the whole box.
-fn fastest(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies::Body]) -> f64 {
+fn fastest(scene: &written::Dew, start: &HumidAir, inflows: &Inflows, bodies: &[bodies::Body]) -> f64 {
     let length = |vector: [f64; 3]| vector.iter().map(|along| along * along).sum::<f64>().sqrt();
-    let inlets = room.faces.iter().flatten().filter_map(|face| match face {
-        Face::Inlet(inflow) => Some(inflow),
+    let inlets = Axis::ALL.into_iter().flat_map(|axis| scene.faces.along(axis)).filter_map(|face| match face {
+        written::Face::Inflow(inflow) => Some(length(inflow.velocity_m_per_s)),
         _ => None,
     });
     let of_solids = bodies.iter().flat_map(|body| body.temperature.rows().iter().map(|row| row[1] + ZERO_CELSIUS));
-    let temperatures =
-        of_solids.chain(inlets.clone().map(|inflow| inflow.temperature)).chain(HeatSources::temperatures(bodies));
+    let temperatures = of_solids.chain(inflows.temperatures()).chain(HeatSources::temperatures(bodies));
     let contrast = temperatures.map(|other| (other / start.temperature - 1.0).abs()).fold(0.0, f64::max);
     let gravity = if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] };
     let fall: f64 = (0..3).map(|axis| gravity[axis].abs() * scene.size_m[axis]).sum();
     let fans = scene.fan.iter().map(|written| fan(written).speed());
-    inlets
-        .map(|inflow| length(inflow.velocity))
-        .chain(fans)
-        .fold(length(scene.air.velocity_m_per_s).max((contrast * fall).sqrt()), f64::max)
+    inlets.chain(fans).fold(length(scene.air.velocity_m_per_s).max((contrast * fall).sqrt()), f64::max)
 }
 
 /// The particles of a solid that are in the room.
