@@ -44,13 +44,16 @@ fn sunshine_by(taps: i32, position: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
     return lit / f32(taps);
 }
 
-// Distance over which air leaves 1/e of the light of what is seen through it, m: a visual range of 50 km by Koschmieder's
-// 3.912 = range over this distance (1924).
-const CLEAR_AIR: f32 = 12800.0;
+// Distance over which air leaves 1/e of the light of what is seen through it, m: a visual range of 100 km, of clear mountain air, by
+// Koschmieder's 3.912 = range over this distance (1924).
+const CLEAR_AIR: f32 = 25600.0;
 
-// Light from a position as it comes through the air, which adds light of its own.
+// Light from a position as it comes through the air, which adds light of its own. The air begins where what is drawn does, at the sphere of one
+// unit round it: a camera stands so far off only to see all of it.
 fn hazed(light: vec3f, position: vec3f) -> vec3f {
-    let left = exp(-length(position - view.eye.xyz) * view.frame.z / CLEAR_AIR);
+    let before = max(length(view.eye.xyz) - 1.0, 0.0);
+    let through = max(length(position - view.eye.xyz) - before, 0.0);
+    let left = exp(-through * view.frame.z / CLEAR_AIR);
     // Indoors there is none, and a map is seen from straight above.
     return select(mix(view.horizon.rgb, light, left), light, (view.frame.w > 0.5) | (view.eye.w < 0.5));
 }
