@@ -141,3 +141,20 @@ fn a_culvert_shorter_than_its_way_is_warned_of() {
         "{short:?}"
     );
 }
+
+/// Deep water beside a film: a rating goes by the level of most of the water, not by that of most of the ground.
+#[test]
+fn a_level_at_a_structure_is_a_mean_by_volume() {
+    let text = "run.until_s = 1\nterrain.plane.extent = { length_m = 60, width_m = 30, cell_m = 1 }\n[flood]\nspacing_m = 1.5\n\
+        water = [{ depth_m = 1.0, polygon = [[0, 0], [15, 0], [15, 30], [0, 30]] }, \
+        { depth_m = 0.01, polygon = [[15, 0], [60, 0], [60, 30], [15, 30]] }]\n\
+        edges = { west = \"wall\", east = \"wall\", south = \"wall\", north = \"wall\" }\n\
+        outflow = [{ name = \"drain\", polygon = [[0, 0], [60, 0], [60, 30], [0, 30]], rating = [[0.0, 0.0], [2.0, 4.0]] }]";
+    let mut flood = common::voronoi(&common::scene(text));
+    let column = flood.gauge_columns().iter().position(|column| column.gauge == "drain").unwrap();
+    go(&mut flood, 0.02);
+    let [deep, film] = [15.0 * 1.0, 45.0 * 0.01];
+    let level = (deep * 1.0 + film * 0.01) / (deep + film);
+    let found = flood.gauge_row()[column];
+    assert!((found / (2.0 * level) - 1.0).abs() < 0.03, "{found} for a level of {level}");
+}
