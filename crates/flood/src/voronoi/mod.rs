@@ -15,7 +15,7 @@
 //! | `adaptive` | cells that follow the water |
 //! | `gpu` | the same steps on a GPU; each pass's WGSL stands in the folder of the pass |
 //!
-//! `solver.rs` is a step of the water, `local.rs` which cells take longer ones,
+//! `solver.rs` is a step of the water, `local/` which cells take longer ones,
 //! `storage.rs` what a cell holds below a level, `step.rs` one of the model.
 
 mod adaptive;
