@@ -39,7 +39,8 @@ impl Inventory<'_> {
                     let particle = Particle::new(self.state.next_id, position, temperature, vapour);
                     self.state.next_id += 1;
                     if self.owns(position) {
-                        self.state.air.push(placed(particle, self.room, slowest(self.air)));
+                        let particle = placed(particle, self.room, slowest(self.air));
+                        self.state.air.push(Particle { temperature, vapour, ..particle });
                     }
                 }
             }
