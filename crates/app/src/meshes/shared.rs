@@ -30,6 +30,8 @@ corpuscle::gpu::declare! {
             pub(super) uv: [f32; 2],
             /// Colour, its opacity multiplied in: bytes of red, green, blue and opacity.
             pub(super) colour: u32,
+            /// Fills up.
+            pub(super) unused: u32,
         }
     }
 
@@ -40,7 +42,7 @@ corpuscle::gpu::declare! {
 impl From<&Vertex> for MeshVertex {
     fn from(vertex: &Vertex) -> Self {
         let Vertex { pos, uv, color } = vertex;
-        Self { position: [pos.x, pos.y], uv: [uv.x, uv.y], colour: u32::from_le_bytes(color.to_array()) }
+        Self { position: [pos.x, pos.y], uv: [uv.x, uv.y], colour: u32::from_le_bytes(color.to_array()), unused: 0 }
     }
 }
 
