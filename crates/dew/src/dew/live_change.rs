@@ -190,7 +190,8 @@ impl Dew {
     /// From now on the air that comes in by a face is as it is now.
     fn end_inflow_over_time(&mut self, [axis, side]: [usize; 2]) {
         let ended = self.inflows.get_mut(axis).and_then(|sides| sides.get_mut(side)).and_then(Option::take);
-        if let (Some(ended), Face::Inlet(inflow)) = (ended, &mut self.room.faces[axis][side]) {
+        let Some(ended) = ended else { return };
+        if let Face::Inlet(inflow) = &mut self.room.faces[axis][side] {
             [inflow.temperature, inflow.vapour] = ended.at(self.state.time);
         }
     }
