@@ -543,17 +543,19 @@ fn air_that_comes_in_over_time_does_so_as_on_the_cpu() {
     let time = host.time() + 0.5 * host.time_step();
     advance(&mut device, time);
     assert_eq!(host.steps(), device.steps());
-    for (host, device) in host.ledger().balances.iter().zip(device.ledger().balances) {
-        let both = [(host.inflow, device.inflow), (host.outflow, device.outflow), (host.now, device.now)];
-        assert!(both.iter().all(|&(a, b)| near(a, b, 1e-5)), "{host:?} and {device:?}");
+    for balance in device.ledger().balances {
+        assert!(balance.relative_error().abs() < 1e-7, "{balance:?}: {:e}", balance.relative_error());
     }
     let (host, device) = (by_id(&host), by_id(&device));
     assert_eq!(host.len(), device.len());
-    let warmest = host.iter().map(|particle| particle.temperature).fold(0.0, f64::max);
-    assert!(warmest > 20.0 + ZERO_CELSIUS + 5.0, "{warmest}");
-    for (a, b) in host.iter().zip(&device) {
-        assert!((a.temperature - b.temperature).abs() < 1e-2 && (a.vapour - b.vapour).abs() < 1e-5, "{a:?} and {b:?}");
+    // As they came in: what they exchange with the room later on is the subject of other tests.
+    let mut warmest: f64 = 0.0;
+    for (a, b) in host.iter().zip(&device).filter(|(a, _)| matches!(a.role, Role::Coming(..))) {
+        assert!((a.temperature - b.temperature).abs() < 1e-5, "{a:?} and {b:?}");
+        assert!((a.vapour - b.vapour).abs() < 1e-8, "{a:?} and {b:?}");
+        warmest = warmest.max(a.temperature);
     }
+    assert!(warmest > 20.0 + ZERO_CELSIUS + 5.0, "{warmest}");
 }
 
 /// The bits of the air and of the solids, and the time.
