@@ -22,7 +22,7 @@ use crate::faces::OpenSide;
 use crate::origin::Origin;
 use crate::room::InflowsOverTime;
 use crate::shared::{self, OutsideColumn, Parameters, Status, TURN};
-use crate::solids::sources::upload::GpuSources;
+use crate::solids::sources::upload::{GpuSources, append};
 use crate::solids::upload::GpuSolids;
 use crate::state::State;
 use crate::utility::upload::distance_field;
@@ -30,7 +30,6 @@ use bytemuck::Zeroable;
 use corpuscle_gpu::{
     BATCH_START, Batches, Gpu, GpuError, Halt, SeenParticles, from_halves, from_pair, read, to_pair, wgpu,
 };
-use corpuscle_scene::Table;
 use corpuscle_sph::kernel::Kernel;
 use tasks::Tasks;
 
@@ -116,15 +115,10 @@ fn outside_column(&is_free: &bool) -> OutsideColumn {
 
 /// Appends what comes in over time to the values, from the ambient air's, and tells the inlets where it is.
 fn append_inflows(inflows: &InflowsOverTime, origin: Origin, parameters: &mut Parameters, rows: &mut Vec<[f64; 2]>) {
-    let mut append = |table: &Table, zero: f64| {
-        let first = rows.len() as u32;
-        rows.extend(table.rows().iter().map(|&[time, value]| [time, value - zero]));
-        [first, rows.len() as u32]
-    };
     for (inlet, inflow) in parameters.inlets.iter_mut().zip(inflows.as_flattened()) {
         let Some(inflow) = inflow else { continue };
-        [inlet.temperature_first, inlet.temperature_end] = append(&inflow.temperature, origin.temperature);
-        [inlet.vapour_first, inlet.vapour_end] = append(&inflow.vapour, origin.vapour);
+        [inlet.temperature_first, inlet.temperature_end] = append(&inflow.temperature, origin.temperature, rows);
+        [inlet.vapour_first, inlet.vapour_end] = append(&inflow.vapour, origin.vapour, rows);
     }
 }
 

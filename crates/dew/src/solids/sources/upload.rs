@@ -58,7 +58,7 @@ impl GpuSources {
 }
 
 /// Appends a table to the values, less `zero`, and returns where it is.
-fn append(table: &Table, zero: f64, values: &mut Vec<[f64; 2]>) -> [u32; 2] {
+pub(crate) fn append(table: &Table, zero: f64, values: &mut Vec<[f64; 2]>) -> [u32; 2] {
     let first = values.len() as u32;
     values.extend(table.rows().iter().map(|&[time, value]| [time, value - zero]));
     [first, values.len() as u32]
