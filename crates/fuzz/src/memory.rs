@@ -14,9 +14,34 @@ pub fn measured<T>(work: impl FnOnce() -> T) -> (T, usize) {
     (result, ALLOCATOR.peak_usage().saturating_sub(before))
 }
 
+/// Memory that the program itself has allocated, bytes; what libraries in C take is not in it.
+pub fn allocated() -> usize {
+    ALLOCATOR.current_usage()
+}
+
+/// Gives the free memory that the allocator of the C library keeps back to the system, so that resident memory is what is in use. Other C
+/// libraries have no such call: nothing is done there.
+pub fn give_back() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    #[allow(unsafe_code)]
+    // SAFETY: the call takes a number and touches free memory only, under the allocator's own locks; it may be made at any time on any thread.
+    unsafe {
+        libc::malloc_trim(0);
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::measured;
+    use super::{allocated, measured};
+
+    #[test]
+    fn what_is_allocated_counts_until_it_is_freed() {
+        let before = allocated();
+        let large = std::hint::black_box(vec![1_u8; 50_000_000]);
+        assert!(allocated() >= before + 40_000_000);
+        drop(large);
+        assert!(allocated() < before + 40_000_000);
+    }
 
     #[test]
     fn the_largest_amount_counts() {

@@ -1,6 +1,7 @@
 //! Runs of random scenes one after another for hours, on the CPU and on a GPU, with pictures: memory, open files and threads stay as they are.
 
 use crate::drive::scratch;
+use crate::memory::{allocated, give_back};
 use crate::scenes::{Kind, scene};
 use corpuscle::gpu::Gpu;
 use corpuscle::pictures::{PictureSettings, Pictures};
@@ -22,8 +23,11 @@ pub struct Use {
     pub time_s: f64,
     /// Scenes run so far.
     pub scenes: u64,
-    /// Resident memory, KiB.
+    /// Resident memory, KiB, once free memory has been given back to the system: what an allocator keeps in pieces differs from scene to scene, and grows for
+    /// hours without anything being held.
     pub resident_kib: u64,
+    /// Memory that the program itself has allocated, KiB, without that of libraries in C.
+    pub allocated_kib: u64,
     /// Open files.
     pub files: usize,
     /// Threads.
@@ -39,11 +43,12 @@ const LONGEST: Duration = Duration::from_secs(5);
 /// scenes ask for other ones.
 const SCENES_A_DEVICE: u64 = 25;
 
-/// Resident memory may rise by this over the first half of the time, KiB: what the allocator keeps differs from scene to scene.
+/// Memory may rise by this over the first half of the time, KiB: what is kept differs from scene to scene.
 const SPREAD_KIB: u64 = 50 * 1024;
 
 impl Use {
     fn now(start: Instant, scenes: u64, gpu: Option<&Gpu>) -> std::io::Result<Self> {
+        give_back();
         let status = fs::read_to_string("/proc/self/status")?;
         let number = |key: &str| {
             let line = status.lines().find_map(|line| line.strip_prefix(key));
@@ -53,6 +58,7 @@ impl Use {
             time_s: start.elapsed().as_secs_f64(),
             scenes,
             resident_kib: number("VmRSS:"),
+            allocated_kib: allocated() as u64 / 1024,
             files: fs::read_dir("/proc/self/fd")?.count(),
             threads: number("Threads:"),
             gpu_kib: gpu.map_or(0, gpu_kib),
@@ -81,7 +87,7 @@ pub fn soak(
     let start = Instant::now();
     let folder = scratch()?;
     let mut file = fs::File::create(log)?;
-    writeln!(file, "time_s\tscenes\tresident_kib\tfiles\tthreads\tgpu_kib")?;
+    writeln!(file, "time_s\tscenes\tresident_kib\tallocated_kib\tfiles\tthreads\tgpu_kib")?;
     let (mut rows_of, mut scenes) = (Vec::new(), 0);
     let mut gpu = open();
     while start.elapsed() < time {
@@ -99,8 +105,8 @@ pub fn soak(
         scenes += 1;
         if start.elapsed() >= (rows_of.len() as u32 + 1) * time / rows {
             let row = Use::now(start, scenes, gpu.as_ref())?;
-            let Use { time_s, scenes, resident_kib, files, threads, gpu_kib } = row;
-            writeln!(file, "{time_s:.0}\t{scenes}\t{resident_kib}\t{files}\t{threads}\t{gpu_kib}")?;
+            let Use { time_s, scenes, resident_kib, allocated_kib, files, threads, gpu_kib } = row;
+            writeln!(file, "{time_s:.0}\t{scenes}\t{resident_kib}\t{allocated_kib}\t{files}\t{threads}\t{gpu_kib}")?;
             rows_of.push(row);
         }
     }
@@ -154,9 +160,9 @@ fn stopped<T>(work: impl FnOnce(&AtomicBool) -> T) -> T {
 pub fn growth(rows: &[Use]) -> Option<String> {
     let (last, before) = rows.split_last()?;
     let first = &before[..before.len().div_ceil(2)];
-    let counts = |row: &Use| [row.resident_kib, row.gpu_kib, row.files as u64, row.threads];
-    let names = ["resident memory, KiB,", "memory on the GPU, KiB,", "open files", "threads"];
-    for (number, (name, spread)) in names.into_iter().zip([SPREAD_KIB, 0, 0, 0]).enumerate() {
+    let counts = |row: &Use| [row.resident_kib, row.allocated_kib, row.gpu_kib, row.files as u64, row.threads];
+    let names = ["resident memory, KiB,", "allocated memory, KiB,", "memory on the GPU, KiB,", "open files", "threads"];
+    for (number, (name, spread)) in names.into_iter().zip([SPREAD_KIB, SPREAD_KIB, 0, 0, 0]).enumerate() {
         let most = first.iter().map(|row| counts(row)[number]).max()?;
         let now = counts(last)[number];
         if now > most + spread {
@@ -171,16 +177,18 @@ mod tests {
     use super::*;
 
     fn row(resident_kib: u64, files: usize, threads: u64) -> Use {
-        Use { time_s: 1.0, scenes: 1, resident_kib, files, threads, gpu_kib: 7 }
+        Use { time_s: 1.0, scenes: 1, resident_kib, allocated_kib: 5, files, threads, gpu_kib: 7 }
     }
 
     #[test]
     fn growth_is_noticed_and_its_absence_too() {
         let flat = [row(100_000, 9, 3), row(120_000, 10, 3), row(90_000, 9, 3), row(121_000, 10, 3)];
         assert_eq!(growth(&flat), None);
+        let allocated = Use { allocated_kib: 90_000, ..row(1000, 9, 3) };
         let on_gpu = Use { gpu_kib: 8, ..row(1000, 9, 3) };
         for (last, word) in [
             (row(200_000, 9, 3), "resident"),
+            (allocated, "allocated"),
             (on_gpu, "GPU"),
             (row(1000, 11, 3), "files"),
             (row(1000, 9, 4), "threads"),
