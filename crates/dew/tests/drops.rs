@@ -1,6 +1,6 @@
 //! Drops: nothing of them is lost, what touches is one, and friction holds them up to its bound.
 
-use corpuscle_dew::drops::{Drop, DropLaws, Drops, Patch, Retention, Surfaces, WATER_DENSITY};
+use corpuscle_dew::drops::{Drop, DropLaws, Drops, Patch, Retention, SurfaceWater, Surfaces, WATER_DENSITY};
 use corpuscle_model::CompensatedSum;
 use corpuscle_solids::{Pose, Shape, Solid};
 use proptest::prelude::*;
@@ -17,6 +17,7 @@ fn laws() -> DropLaws {
         gravity: [0.0, 0.0, -9.81],
         smallest_radius: 5e-5,
         density: WATER_DENSITY,
+        time_factor: 1.0,
     }
 }
 
@@ -31,7 +32,12 @@ fn on_pane(laws: DropLaws, patches: Vec<Patch>) -> Drops {
 fn with_sites(laws: DropLaws, patches: Vec<Patch>, sites_per_area: f64, seed: u64) -> Drops {
     let pane = Shape::cuboid([0.01, 0.1, 0.1]).unwrap();
     let solid = Solid::of_shape(pane, Pose::new([-0.005, 0.0, 0.0], [0.0; 3]));
-    let surfaces = Surfaces { solids: Arc::from([solid]), sites_per_area: vec![sites_per_area], patches, room: ROOM };
+    let surfaces = Surfaces {
+        solids: Arc::from([solid]),
+        water: vec![SurfaceWater::Drops { sites_per_area }],
+        patches,
+        room: ROOM,
+    };
     Drops::new(laws, surfaces, seed)
 }
 
@@ -63,6 +69,61 @@ fn assert_apart(drops: &Drops) {
             let away: f64 = (0..3).map(|axis| (one.position[axis] - other.position[axis]).powi(2)).sum();
             let touch = one.radius + other.radius;
             assert!(away.sqrt() >= touch, "{one:?} touches {other:?}");
+        }
+    }
+}
+
+/// A pane on which water is a film.
+fn wetted(laws: DropLaws, patches: Vec<Patch>) -> Drops {
+    let pane = Shape::cuboid([0.01, 0.1, 0.1]).unwrap();
+    let solid = Solid::of_shape(pane, Pose::new([-0.005, 0.0, 0.0], [0.0; 3]));
+    Drops::new(laws, Surfaces { solids: Arc::from([solid]), water: vec![SurfaceWater::Film], patches, room: ROOM }, 1)
+}
+
+#[test]
+fn a_drop_becomes_part_of_the_film_that_flows_down_and_off() {
+    let laws = DropLaws { viscosity: 1e-3, ..laws() };
+    let mut drops = wetted(laws, patches(20, 0.1));
+    drops.add(0, [0.0, 0.0, 0.03], [0.0; 3], half_ball(2e-3));
+    drops.advance(1e-3);
+    assert!(drops.drops().is_empty());
+    // The mean height of the water falls, and nothing is lost on the way.
+    let height = |drops: &Drops| {
+        let shares = drops.shares();
+        let heights = shares.iter().zip(drops.patches()).map(|(share, patch)| share.water * patch.position[2]);
+        heights.sum::<f64>() / drops.water()
+    };
+    let mut before = height(&drops);
+    for _ in 0..5 {
+        let state = drops.state();
+        drops.advance(0.1);
+        let after = height(&drops);
+        assert!(after < before, "{before} {after}");
+        assert!(((drops.water() + drops.dripped()) / half_ball(2e-3) - 1.0).abs() < 1e-14);
+        // What is saved goes on to the same bits.
+        let mut again = wetted(laws, patches(20, 0.1));
+        again.restore(state);
+        again.advance(0.1);
+        assert_eq!(again.state(), drops.state());
+        before = after;
+    }
+    (0..100).for_each(|_| drops.advance(100.0));
+    assert!(drops.dripped() > 0.9 * half_ball(2e-3), "{}", drops.dripped() / half_ball(2e-3));
+}
+
+#[test]
+fn a_film_stays_on_a_level_surface_and_hangs_up_to_the_capillary_length() {
+    let level = DropLaws { viscosity: 1e-3, gravity: [-9.81, 0.0, 0.0], ..laws() };
+    let hanging = DropLaws { gravity: [9.81, 0.0, 0.0], ..level };
+    let all = patches(10, 0.1);
+    let thick = vec![WATER_DENSITY * all[0].area() * 5e-3; all.len()];
+    for (laws, expected) in [(level, 5e-3), (hanging, (0.0728 / (WATER_DENSITY * 9.81)).sqrt())] {
+        let mut drops = wetted(laws, all.clone());
+        drops.condense(&thick);
+        drops.advance(10.0);
+        for (share, patch) in drops.shares().iter().zip(&all) {
+            let thickness = share.water / (WATER_DENSITY * patch.area());
+            assert!((thickness / expected - 1.0).abs() < 1e-12, "{thickness} for {expected}");
         }
     }
 }
@@ -137,8 +198,12 @@ fn drops_fall_from_a_ceiling_when_surface_tension_cannot_hold_them() {
 #[test]
 fn a_drop_runs_down_a_ball_and_leaves_where_it_overhangs() {
     let ball = Solid::of_shape(Shape::sphere(0.05).unwrap(), Pose::default());
-    let surfaces =
-        Surfaces { solids: Arc::from([ball.clone()]), sites_per_area: vec![1e10], patches: Vec::new(), room: ROOM };
+    let surfaces = Surfaces {
+        solids: Arc::from([ball.clone()]),
+        water: vec![SurfaceWater::Drops { sites_per_area: 1e10 }],
+        patches: Vec::new(),
+        room: ROOM,
+    };
     let mut drops = Drops::new(DropLaws { retention: Retention::Friction(1e-5), ..laws() }, surfaces, 1);
     let mass = half_ball(5e-3);
     drops.add(0, [0.01, 0.0, 0.1], [0.0; 3], mass);

@@ -57,6 +57,54 @@ fn drops_form_and_run_off_and_no_water_is_lost() {
     }
 }
 
+/// The same pane where water wets it.
+fn with_film() -> String {
+    let viscous = PANE.replace(", friction = 1e-7, viscosity_pa_s = 0", "");
+    viscous.replace("held = true", "held = true\nwetting = \"film\"")
+}
+
+#[test]
+fn a_film_forms_runs_off_and_dries_and_no_water_is_lost() {
+    let drying = with_film().replace("temperature_c = 5", "temperature_c = [[0, 5], [0.15, 5], [0.16, 60]]");
+    let mut dew = dew(&drying);
+    advance(&mut dew, 0.15);
+    assert_eq!(gauge(&dew, "drops.number"), 0.0);
+    assert_eq!(gauge(&dew, "pane.covered_part"), 0.0);
+    assert!(gauge(&dew, "pane.fogged_at_s").is_nan() && gauge(&dew, "pane.first_drop_at_s").is_nan());
+    let (wet, left) = (gauge(&dew, "pane.water_kg"), gauge(&dew, "drops.left_kg"));
+    assert!(wet > 0.0 && left > 0.0);
+    advance(&mut dew, 0.6);
+    assert!(gauge(&dew, "pane.water_kg") < 0.5 * wet, "{wet} to {}", gauge(&dew, "pane.water_kg"));
+    for balance in dew.ledger().balances {
+        assert!(balance.relative_error().abs() < 1e-10, "{balance:?}: {:e}", balance.relative_error());
+    }
+}
+
+#[test]
+fn as_much_lies_on_a_wetted_pane_in_accelerated_time() {
+    let film = |factor: f64, until: f64| {
+        let mut dew = dew(&with_film().replace("time_factor = 100", &format!("time_factor = {factor}")));
+        advance(&mut dew, until);
+        [gauge(&dew, "pane.water_kg"), gauge(&dew, "drops.left_kg")]
+    };
+    // Once the air has settled, as much has run off of a film that flows as much faster as it grows.
+    let [slow, fast] = [film(50.0, 1.2), film(100.0, 0.6)];
+    for (slow, fast) in slow.into_iter().zip(fast) {
+        assert!((slow / fast - 1.0).abs() < 0.2, "{slow} {fast}");
+    }
+}
+
+#[test]
+fn a_film_where_it_cannot_be_is_refused() {
+    let refused = |text: String| Scene::parse(&text, "test", &[]).unwrap_err().to_string();
+    let sites = refused(with_film().replace("\"film\"", "\"film\"\nsites_per_m2 = 1e8"));
+    assert!(sites.contains("dew.solid.0.sites_per_m2") && sites.contains("leave it out"), "{sites}");
+    let scheme = refused(with_film().replace("[dew]\n", "[dew]\nscheme = \"particle-condensation\"\n"));
+    assert!(scheme.contains("dew.solid.0.wetting") && scheme.contains("physical"), "{scheme}");
+    let inviscid = refused(with_film().replace("drops = {", "drops = { viscosity_pa_s = 0,"));
+    assert!(inviscid.contains("viscosity_pa_s"), "{inviscid}");
+}
+
 /// However a plate is turned, its surface is as large.
 #[test]
 fn patches_of_a_turned_plate_are_as_large_as_the_plate() {

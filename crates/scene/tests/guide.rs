@@ -321,6 +321,7 @@ fn full_dew() -> Scene {
         radiation: Some(dew::Radiation { emissivity: 0.5, surroundings_c: Series::Constant(1.0) }),
         treatment: Some(dew::Treatment::VirtualForce),
         sites_per_m2: Some(1.0),
+        wetting: dew::Wetting::Film,
         face: vec![dew::SolidFace { name: "a".into(), side: dew::Side::XMax }],
     };
     let dew = Dew {

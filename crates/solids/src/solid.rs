@@ -42,6 +42,11 @@ impl Solid {
         self.pose.turn_back(direction)
     }
 
+    /// A direction in the solid's own coordinates as one of the scene.
+    pub fn direction_of(&self, own: [f64; 3]) -> [f64; 3] {
+        self.pose.turn(own)
+    }
+
     /// The axis of its own, and 0 for its negative or 1 for its positive end, along which a direction of the scene points most; the first of those that
     /// are equal.
     pub fn axis_and_end(&self, direction: [f64; 3]) -> [usize; 2] {

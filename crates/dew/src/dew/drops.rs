@@ -1,21 +1,21 @@
 //! Drops on the solids in a step.
 
 use super::Dew;
-use crate::drops::{DropLaws, Drops, Surfaces};
+use crate::drops::{DropLaws, Drops, SurfaceWater, Surfaces};
 use crate::wetting::{Wetting, patch_of};
 use corpuscle_solids::Solid;
 use std::sync::Arc;
 
 impl Dew {
     /// From here on water on the solids forms drops. `solids` are the bodies, in order.
-    pub(crate) fn lay_drops(&mut self, laws: DropLaws, solids: Arc<[Solid]>, sites_per_area: Vec<f64>, seed: u64) {
+    pub(crate) fn lay_drops(&mut self, laws: DropLaws, solids: Arc<[Solid]>, water: Vec<SurfaceWater>, seed: u64) {
         let (mut particles, mut patches) = (Vec::new(), Vec::new());
         for (number, particle) in self.solids.particles.iter().enumerate() {
             let Some(normal) = particle.normal.filter(|_| particle.area > 0.0) else { continue };
             particles.push(number as u32);
             patches.push(patch_of(particle, normal, &solids[particle.body as usize], self.scale.spacing));
         }
-        let surfaces = Surfaces { solids, sites_per_area, patches, room: [self.room.low, self.room.high] };
+        let surfaces = Surfaces { solids, water, patches, room: [self.room.low, self.room.high] };
         self.wetting = Some(Wetting::new(Drops::new(laws, surfaces, seed), particles));
         self.set_evaporation();
     }

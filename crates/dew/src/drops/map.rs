@@ -10,7 +10,7 @@ pub struct Share {
     pub water: f64,
     /// Area covered by resolved drops, m2.
     pub covered: f64,
-    /// Water in unresolved drops, kg.
+    /// Water in unresolved drops or in a film, kg.
     pub unseen: f64,
     /// Vapour that leaves the resolved drops, over diffusivity and difference of density, m.
     pub evaporation: f64,
@@ -72,18 +72,23 @@ impl Drops {
 
     /// The unresolved drops of a patch, where it has this share: on the area that resolved drops leave.
     pub fn unseen_on(&self, patch: usize, share: &Share) -> Unseen {
-        let Some(at) = self.patches.get(patch) else { return Unseen::default() };
+        let Some(at) = self.patches.get(patch).filter(|at| !self.has_film(at.solid)) else { return Unseen::default() };
         let bare = (1.0 - share.covered / at.area()).max(MIN_BARE_PART);
         let thickness = share.unseen / (self.laws.density * at.area() * bare);
-        let Unseen { radius, covered } = Unseen::new(thickness, self.per_area[at.solid as usize], self.cap);
+        let Unseen { radius, covered } =
+            Unseen::new(thickness, self.water[at.solid as usize].sites_per_area(), self.cap);
         Unseen { radius, covered: bare * covered }
     }
 
     /// Vapour that leaves the drops of a patch where it has this share, over diffusivity, difference of density and area, 1/m: through the air within a few radii of each
     /// drop, so that many small drops evaporate as fast as a wet surface does, and a single one by its radius. Where they cover more, what leaves them spreads
-    /// less: (1 - sqrt(covered))^1.5, as heat at contacts (Cooper, Mikic & Yovanovich, International Journal of Heat and Mass Transfer 12, 1969, 279).
+    /// less: (1 - sqrt(covered))^1.5, as heat at contacts (Cooper, Mikic & Yovanovich, International Journal of Heat and Mass Transfer 12, 1969, 279). Infinite from a
+    /// film: nothing but the air holds its vapour back.
     pub fn evaporation_on(&self, patch: usize, share: &Share) -> f64 {
         let Some(at) = self.patches.get(patch) else { return 0.0 };
+        if self.has_film(at.solid) {
+            return if share.unseen > 0.0 { f64::INFINITY } else { 0.0 };
+        }
         let unseen = self.unseen_on(patch, share);
         let covered = (share.covered / at.area() + unseen.covered).min(1.0);
         let of_unseen = contact_line::evaporation(self.laws.contact_angle) * unseen.covered
@@ -116,7 +121,7 @@ impl Drops {
     }
 
     /// The patches whose middle a drop covers, or the nearest.
-    fn patches_under(&self, drop: &Drop) -> Vec<usize> {
+    pub(super) fn patches_under(&self, drop: &Drop) -> Vec<usize> {
         let covered = drop.radius;
         let is_below = |patch: usize| {
             let patch = &self.patches[patch];

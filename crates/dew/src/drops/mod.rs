@@ -7,6 +7,7 @@
 
 mod cap;
 mod contact_line;
+mod film;
 mod grid;
 mod map;
 mod merge;
@@ -24,6 +25,7 @@ use cap::{angle, height, reach};
 use contact_line::ContactLine;
 use corpuscle_model::CompensatedSum;
 use corpuscle_solids::Solid;
+use film::Films;
 use grid::Grid;
 use serde::{Deserialize, Serialize};
 use sites::Sites;
@@ -48,6 +50,30 @@ pub struct DropLaws {
     pub smallest_radius: f64,
     /// Density of water, kg/m3.
     pub density: f64,
+    /// Water comes and goes so many times faster than in reality; films flow as much faster.
+    pub time_factor: f64,
+}
+
+/// How water lies on a solid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SurfaceWater {
+    /// As drops.
+    Drops {
+        /// Density of nucleation sites, 1/m2.
+        sites_per_area: f64,
+    },
+    /// As a film, on a surface that water wets.
+    Film,
+}
+
+impl SurfaceWater {
+    /// Density of nucleation sites, 1/m2; a film needs none.
+    pub fn sites_per_area(self) -> f64 {
+        match self {
+            Self::Drops { sites_per_area } => sites_per_area,
+            Self::Film => 0.0,
+        }
+    }
 }
 
 /// Density of water at 20 °C, kg/m3 (IAPWS-95 at 1 atm).
@@ -102,7 +128,7 @@ pub struct Drop {
 pub struct DropState {
     /// The drops.
     pub drops: Vec<Drop>,
-    /// Mass of the drop at each site that is not resolved yet, kg.
+    /// Mass of the drop at each site that is not resolved yet, or of the film there, kg.
     pub unseen: Vec<f64>,
     /// Mass that left the solids as drops, kg.
     pub dripped: CompensatedSum,
@@ -133,8 +159,9 @@ pub struct Drops {
     cap: Cap,
     line: ContactLine,
     solids: Arc<[Solid]>,
-    /// Density of nucleation sites on each solid, 1/m2.
-    per_area: Vec<f64>,
+    /// How water lies on each solid.
+    water: Vec<SurfaceWater>,
+    films: Films,
     patches: Vec<Patch>,
     /// The patches by position.
     patch_grid: Grid,
@@ -156,8 +183,8 @@ pub struct Drops {
 pub struct Surfaces {
     /// The solids.
     pub solids: Arc<[Solid]>,
-    /// Density of nucleation sites on each of them, 1/m2.
-    pub sites_per_area: Vec<f64>,
+    /// How water lies on each of them.
+    pub water: Vec<SurfaceWater>,
     /// The patches on which water condenses.
     pub patches: Vec<Patch>,
     /// Smallest and largest coordinates of the scene, m.
@@ -167,18 +194,19 @@ pub struct Surfaces {
 impl Drops {
     /// No drops yet. `seed` is that of the positions of nucleation sites.
     pub fn new(laws: DropLaws, surfaces: Surfaces, seed: u64) -> Self {
-        let Surfaces { solids, sites_per_area: per_area, patches, room } = surfaces;
+        let Surfaces { solids, water, patches, room } = surfaces;
         let cap = Cap::new(laws.contact_angle);
         let widths: Vec<f64> = patches.iter().map(Patch::reach).collect();
         let patch_grid = Grid::new(patches.iter().map(|patch| patch.position), &widths);
-        let sites = Sites::scatter(&solids, &patches, &per_area, smallest_reach(&laws), room, seed);
+        let sites = Sites::scatter(&solids, &patches, &water, smallest_reach(&laws), room, seed);
         let count = sites.all.len();
         Self {
             laws,
             line: ContactLine::new(laws.retention, laws.contact_angle),
             cap,
             solids,
-            per_area,
+            films: Films::new(&patches, &water, &sites),
+            water,
             patches,
             patch_grid,
             cover: vec![NONE; count],
@@ -196,7 +224,7 @@ impl Drops {
         &self.state.drops
     }
 
-    /// Mass of the drop at each site that is not resolved yet, kg.
+    /// Mass of the drop at each site that is not resolved yet, or of the film there, kg.
     pub fn unseen_masses(&self) -> &[f64] {
         &self.state.unseen
     }
@@ -308,7 +336,7 @@ impl Drops {
             if let Some(drop) = covering {
                 drop.mass += mass;
                 self.state.unseen[site] = 0.0;
-            } else if mass >= smallest {
+            } else if mass >= smallest && !self.has_film(self.sites.all[site].solid) {
                 let Site { solid, position, .. } = self.sites.all[site];
                 self.state.unseen[site] = 0.0;
                 self.cover[site] = self.state.drops.len() as u32;
@@ -323,13 +351,20 @@ impl Drops {
     }
 
     /// Moves the drops on by a time, s: those that touch merge, those that are too heavy slide, sweep up what they meet, and
-    /// leave at edges, from overhangs and out of the room.
+    /// leave at edges, from overhangs and out of the room. Films flow, and take up drops that come to their solids.
     pub fn advance(&mut self, time: f64) {
         self.state.drops.retain(|drop| drop.mass > 0.0);
         self.fit();
         self.merge();
         self.slide(time);
+        self.join_films();
+        self.flow(time);
         self.find_covered();
+    }
+
+    /// Whether water lies on a solid as a film.
+    fn has_film(&self, solid: u32) -> bool {
+        matches!(self.water[solid as usize], SurfaceWater::Film)
     }
 
     fn is_in_room(&self, position: [f64; 3]) -> bool {

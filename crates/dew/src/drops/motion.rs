@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 const MAX_DISPLACEMENT: f64 = 0.25;
 
 /// A drop cannot follow a surface that bends away by more than this at an edge: cosine of 45 degrees.
-const SHARPEST_BEND: f64 = 0.707;
+pub(super) const SHARPEST_BEND: f64 = 0.707;
 
 impl Drops {
     /// Moves the drops that their weight moves, in steps short enough to sweep up all that they meet.

@@ -6,7 +6,7 @@
 //! drops that grow and merge do, 0.55: Fritter, Knobler & Beysens, Phys. Rev. A 43, 1991, 2858).
 
 use super::grid::Grid;
-use super::{Patch, distance2, dot};
+use super::{Patch, SurfaceWater, distance2, dot};
 use corpuscle_solids::Solid;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -83,12 +83,12 @@ pub fn most_per_area(reach: f64) -> f64 {
 }
 
 impl Sites {
-    /// Scatters sites over the solids: `per_area` is their density on each, 1/m2; drops reach as far as `reach`, m, from their middles when they
+    /// Scatters sites over the solids with drops, and gives each patch of one with a film a site of its own; drops reach as far as `reach`, m, from their middles when they
     /// are seen; `room` are the smallest and the largest coordinates.
     pub fn scatter(
         solids: &[Solid],
         patches: &[Patch],
-        per_area: &[f64],
+        water: &[SurfaceWater],
         reach: f64,
         room: [[f64; 3]; 2],
         seed: u64,
@@ -96,13 +96,16 @@ impl Sites {
         let of_patches: Vec<f64> = patches.iter().map(Patch::reach).collect();
         let patch_grid = Grid::new(patches.iter().map(|patch| patch.position), &of_patches);
         let mut candidates = Vec::new();
-        for (number, solid) in solids.iter().enumerate() {
+        let with_drops = (0..solids.len()).filter(|&number| !matches!(water[number], SurfaceWater::Film));
+        for number in with_drops {
+            let solid = &solids[number];
+            let per_area = water[number].sites_per_area();
             let Some(within) = around_patches(patches, number, reach) else { continue };
-            let scatter = Scatter { solid, number: number as u32, per_area: per_area[number], reach, room, within };
+            let scatter = Scatter { solid, number: number as u32, per_area, reach, room, within };
             candidates.extend(scatter.candidates(seed));
         }
         let mut sites = kept(&candidates, 2.0 * reach);
-        let apart = |solid: u32| reach.max(0.5 / per_area[solid as usize].sqrt());
+        let apart = |solid: u32| reach.max(0.5 / water[solid as usize].sites_per_area().sqrt());
         let file = |sites: &[Site], wider: f64| {
             let wide: Vec<f64> = sites.iter().map(|site| wider * apart(site.solid)).collect();
             Grid::new(sites.iter().map(|site| site.position), &wide)
@@ -122,6 +125,7 @@ impl Sites {
         };
         let mut pairs: Vec<(u32, u32)> = candidates.par_iter().filter_map(pair).collect();
         pairs.par_sort_unstable();
+        add_films(&mut pairs, &mut sites, patches, water);
         add_bare_patches(&mut pairs, &mut sites, patches);
         let pieces = pieces(&pairs, &mut sites, patches.len());
         // Drops are mostly much larger than sites are apart.
@@ -343,6 +347,16 @@ const PATCH_MARGIN: f64 = 1.2;
 
 /// Most doublings of the radius in which the nearest site is searched; the first is the distance between sites.
 const SITE_SEARCH_DOUBLINGS: u32 = 4;
+
+/// Gives each patch with a film a site of its own.
+fn add_films(pairs: &mut Vec<(u32, u32)>, sites: &mut Vec<Site>, patches: &[Patch], water: &[SurfaceWater]) {
+    let is_film = |patch: &Patch| matches!(water[patch.solid as usize], SurfaceWater::Film);
+    for (number, patch) in patches.iter().enumerate().filter(|(_, patch)| is_film(patch)) {
+        let Patch { solid, position, normal, .. } = *patch;
+        pairs.push((number as u32, sites.len() as u32));
+        sites.push(Site { solid, position, normal, patch: number as u32 });
+    }
+}
 
 /// Patches that no position is on, as they are small, gather for the nearest site; where there is none, for one of their own.
 fn add_bare_patches(pairs: &mut Vec<(u32, u32)>, sites: &mut Vec<Site>, patches: &[Patch]) {

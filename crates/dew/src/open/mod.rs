@@ -4,7 +4,7 @@ mod inflows;
 
 use crate::air::{LEAST_SOUND, Properties, SOUND_OVER_MOTION, TemperatureCoefficients};
 use crate::dew::{Dew, Setup};
-use crate::drops::{DropLaws, MOST_SITES, Retention, WATER_DENSITY, most_per_area, smallest_reach};
+use crate::drops::{DropLaws, MOST_SITES, Retention, SurfaceWater, WATER_DENSITY, most_per_area, smallest_reach};
 use crate::fan::Fan;
 use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
 use crate::layer::Layer;
@@ -72,7 +72,7 @@ pub fn open_on(processes: &Processes, scene: &written::Dew, seed: u64, folder: &
     dew.warnings.extend(dew.lags());
     let solids: Vec<Solid> = bodies.into_iter().map(|body| body.solid).collect();
     let laws = laws(scene, &solids)?;
-    dew.lay_drops(laws, Arc::from(solids), sites_per_area(scene), seed);
+    dew.lay_drops(laws, Arc::from(solids), water(scene), seed);
     measure_faces(scene, &mut dew)?;
     dew.lead();
     Ok(dew)
@@ -303,9 +303,15 @@ fn particles(body: &bodies::Body, room: &Room) -> Body {
     }
 }
 
-/// Density of nucleation sites on each solid, 1/m2.
-fn sites_per_area(scene: &written::Dew) -> Vec<f64> {
-    scene.solid.iter().map(|solid| solid.sites_per_m2.unwrap_or(scene.drops.sites_per_m2)).collect()
+/// How water lies on each solid.
+fn water(scene: &written::Dew) -> Vec<SurfaceWater> {
+    let of = |solid: &written::Solid| match solid.wetting {
+        written::Wetting::Drops => {
+            SurfaceWater::Drops { sites_per_area: solid.sites_per_m2.unwrap_or(scene.drops.sites_per_m2) }
+        }
+        written::Wetting::Film => SurfaceWater::Film,
+    };
+    scene.solid.iter().map(of).collect()
 }
 
 /// Radius of the smallest drops where the scene does not say and there is room for as many, m.
@@ -319,7 +325,7 @@ fn laws(scene: &written::Dew, solids: &[Solid]) -> Result<DropLaws, ModelError> 
     // Sites at most, of drops so large.
     let sites = |radius: f64| -> f64 {
         let most = most_per_area(smallest_reach(&with(radius)));
-        solids.iter().zip(sites_per_area(scene)).map(|(solid, wanted)| solid.area() * wanted.min(most)).sum()
+        solids.iter().zip(water(scene)).map(|(solid, water)| solid.area() * water.sites_per_area().min(most)).sum()
     };
     // They fall at most as one over the radius squared.
     let large_enough = |most: f64| {
@@ -350,6 +356,7 @@ fn laws_but_smallest(scene: &written::Dew) -> DropLaws {
         gravity: scene.gravity_m_per_s2,
         smallest_radius: SMALLEST,
         density: WATER_DENSITY,
+        time_factor: scene.time_factor,
     }
 }
 

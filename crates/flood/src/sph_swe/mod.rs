@@ -53,6 +53,7 @@ use crate::friction::Roughness;
 use crate::gauges::{LineGauge, PointGauge};
 use crate::sampling::Sample;
 use crate::zone::Source;
+use boundaries::outflow::BEYOND;
 use change::Overrides;
 use corpuscle_model::{Account, CompensatedSum};
 use corpuscle_scene::{Flood, Table};
@@ -132,7 +133,7 @@ struct State {
     overrides: Overrides,
 }
 
-/// Particles of a state lie at most so many times the terrain's size beyond it.
+/// Particles of a state lie at most so many times the terrain's size beyond it, or as far as what has left goes.
 const MOST_BEYOND: f64 = 1.0;
 
 /// Cells of a state are at least this part of the spacing wide.
@@ -143,10 +144,13 @@ impl SphSweFlood {
     fn can_be(&self, state: &State) -> bool {
         let bounds = self.surroundings.terrain.bounds();
         let [length, width] = [bounds.x_max - bounds.x_min, bounds.y_max - bounds.y_min];
-        let is_near = |x: f64, low: f64, high: f64, size: f64| {
-            (low - MOST_BEYOND * size..=high + MOST_BEYOND * size).contains(&x)
-        };
         let smoothing = self.settings.sph_swe.smoothing_length_m.unwrap_or(self.spacing);
+        // What has left goes on for a while.
+        let reach = BEYOND * self.settings.sph_swe.largest_smoothing * smoothing;
+        let is_near = |x: f64, low: f64, high: f64, size: f64| {
+            let margin = reach.max(MOST_BEYOND * size);
+            (low - margin..=high + margin).contains(&x)
+        };
         let largest = length.max(width).max(100.0 * self.spacing.max(smoothing));
         let particle_can_be = |particle: &Particle| {
             let Particle { x, y, u, v, ax, ay, volume, h, next_h, depth, ground, ground_slope, outside, id: _ } =

@@ -22,7 +22,7 @@ impl Model for SphSweFlood {
 
     #[cfg(feature = "gpu")]
     fn cpu_only(&self) -> Option<CpuOnly> {
-        None
+        self.on_cpu_only()
     }
 
     #[cfg(feature = "gpu")]

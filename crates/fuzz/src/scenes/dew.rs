@@ -3,7 +3,7 @@
 use super::Maker;
 use corpuscle_scene::dew::{
     Air, AirInflow, Boundary, Dew, Drops, Face, Faces, Fan, Heater, HumidityTransport, LowUtility, Material, Mean,
-    Output, Outside, Radiation, Scheme, Shape, Side, Solid, SolidFace, Transport, Treatment, WallLayer,
+    Output, Outside, Radiation, Scheme, Shape, Side, Solid, SolidFace, Transport, Treatment, WallLayer, Wetting,
 };
 use corpuscle_scene::{KernelName, Series};
 
@@ -48,7 +48,7 @@ pub(super) fn scene(maker: &mut Maker<'_>) -> String {
             .maybe(0.2, |maker| LowUtility { distance: maker.between(1.0, 6.0), after_s: maker.between(0.01, 1.0) })
             .filter(|_| leaves),
         output: Output { air: !maker.has(0.2), solids: !maker.has(0.2) },
-        solid: solids(maker, size, spacing, &all, until),
+        solid: solids(maker, scheme, size, spacing, &all, until),
         faces: faces.clone(),
     };
     super::text(maker, until, &[("dew", &dew)])
@@ -146,7 +146,14 @@ fn drops(maker: &mut Maker<'_>) -> Drops {
     }
 }
 
-fn solids(maker: &mut Maker<'_>, size: [f64; 3], spacing: f64, faces: &[&Face; 6], until: f64) -> Vec<Solid> {
+fn solids(
+    maker: &mut Maker<'_>,
+    scheme: Scheme,
+    size: [f64; 3],
+    spacing: f64,
+    faces: &[&Face; 6],
+    until: f64,
+) -> Vec<Solid> {
     let shape = |maker: &mut Maker<'_>| {
         let (a, b) = (maker.between(1.0, 1.6), maker.between(1.0, 2.0));
         match maker.random.below(4) {
@@ -170,6 +177,11 @@ fn solids(maker: &mut Maker<'_>, size: [f64; 3], spacing: f64, faces: &[&Face; 6
             emissivity: maker.between(0.0, 1.0),
             surroundings_c: maker.series(-30.0, 50.0, until),
         });
+        let wetting = match scheme {
+            Scheme::Physical if maker.has(0.25) => Wetting::Film,
+            _ => Wetting::Drops,
+        };
+        let sites = maker.maybe(0.2, |maker| maker.between(1e4, 1e6));
         Solid {
             name: name.into(),
             shape,
@@ -198,7 +210,8 @@ fn solids(maker: &mut Maker<'_>, size: [f64; 3], spacing: f64, faces: &[&Face; 6
             outside: outside.filter(|_| !held),
             radiation: radiation.filter(|_| !held),
             treatment: maker.maybe(0.2, |maker| maker.one_of(&[Treatment::DensityCorrection, Treatment::Ghost])),
-            sites_per_m2: maker.maybe(0.2, |maker| maker.between(1e4, 1e6)),
+            sites_per_m2: sites.filter(|_| wetting == Wetting::Drops),
+            wetting,
             face: Vec::new(),
         }
     };

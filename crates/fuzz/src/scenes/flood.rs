@@ -38,7 +38,7 @@ pub(super) fn scene(maker: &mut Maker<'_>, is_sph_swe: bool) -> String {
         let volume = flood.spacing_m.unwrap_or(1.0).powi(2) * flood.spacing_depth_m.unwrap_or(1.0);
         flood.sph_swe.smoothing_length_m = maker.maybe(0.3, |maker| maker.between(1.7, 4.0) * volume.sqrt());
     }
-    super::text(maker, until, &[("terrain", &terrain), ("flood", &flood)])
+    written(maker, until, &terrain, &flood)
 }
 
 /// Closed on all sides, without anything that comes in; half of them at rest.
@@ -63,7 +63,39 @@ pub(super) fn lake(maker: &mut Maker<'_>) -> String {
         link: Vec::new(),
         ..made
     };
-    super::text(maker, until, &[("terrain", &terrain), ("flood", &flood)])
+    written(maker, until, &terrain, &flood)
+}
+
+/// The text of a scene; in feet its numbers stay, and its keys change.
+fn written(maker: &mut Maker<'_>, until: f64, terrain: &Terrain, flood: &Flood) -> String {
+    let mut value = toml::Value::try_from(flood).expect("a flood can be written");
+    if flood.units == FloodUnits::Us {
+        name_in_feet(&mut value);
+    }
+    super::text(maker, until, &[("terrain", terrain), ("flood", &value)])
+}
+
+/// Ends of keys in metres, and in feet.
+const ENDS: [[&str; 2]; 5] = [
+    ["_m3_per_s", "_ft3_per_s"],
+    ["_m_per_s2", "_ft_per_s2"],
+    ["_m_per_s", "_ft_per_s"],
+    ["_mm_per_h", "_in_per_h"],
+    ["_m", "_ft"],
+];
+
+fn name_in_feet(value: &mut toml::Value) {
+    match value {
+        toml::Value::Table(table) => {
+            for (key, mut value) in std::mem::take(table) {
+                name_in_feet(&mut value);
+                let ends = ENDS.iter().find_map(|[si, us]| Some(format!("{}{us}", key.strip_suffix(si)?)));
+                table.insert(ends.unwrap_or(key), value);
+            }
+        }
+        toml::Value::Array(items) => items.iter_mut().for_each(name_in_feet),
+        _ => {}
+    }
 }
 
 fn terrain(maker: &mut Maker<'_>) -> Terrain {

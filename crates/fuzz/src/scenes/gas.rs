@@ -56,7 +56,7 @@ pub(super) fn scene(maker: &mut Maker<'_>) -> String {
         start_file: None,
         well: maker.maybe(0.2, |maker| SquareWell { depth: maker.between(-1.0, 2.0), width: maker.between(1.1, 2.0) }),
         shear: maker.maybe(0.1, |maker| Shear {
-            rate_per_s: maker.between(-0.3, 0.3),
+            rate_per_s: maker.between(0.01, 0.3),
             temperature: maker.maybe(0.5, |maker| maker.between(0.2, 2.0)),
         }),
         size,
@@ -155,7 +155,10 @@ fn measure(maker: &mut Maker<'_>, size: &[f64]) -> Measure {
         speed_bins: 1 + maker.random.below(60),
         profile_axis: maker.one_of(&Axis::ALL[..size.len()]),
         profile_bins: 1 + maker.random.below(60),
-        pair_distance: maker.maybe(0.3, |maker| maker.between(0.5, 50.0)),
+        pair_distance: maker.maybe(0.3, |maker| {
+            let shortest = size.iter().copied().fold(f64::INFINITY, f64::min);
+            0.5 * shortest * maker.between(0.1, 1.0)
+        }),
         pair_bins: 1 + maker.random.below(60),
         lag_collisions: maker.between(0.5, 40.0),
         region: maker.list(0.4, 2, |maker, number| NamedRegion {

@@ -44,9 +44,23 @@ pub struct Solid {
     /// Density of nucleation sites on it, 1/m2. Left out: as on all, by `drops.sites_per_m2`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sites_per_m2: Option<f64>,
+    /// How water lies on it.
+    #[serde(default)]
+    pub wetting: Wetting,
     /// Parts of its surface that are measured by themselves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub face: Vec<SolidFace>,
+}
+
+/// How water lies on a solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Wetting {
+    /// As drops.
+    #[default]
+    Drops,
+    /// As a film that flows down: the surface is one that water wets, as with an anti-fog coating.
+    Film,
 }
 
 /// A part of a solid's surface that is measured by itself: where the surface faces one way more than any other.

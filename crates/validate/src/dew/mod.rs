@@ -7,6 +7,7 @@ mod breath_figures;
 mod cavity;
 mod dew_point;
 mod evaporation;
+mod falling_film;
 mod fick;
 mod film;
 mod heat_sources;
@@ -37,6 +38,7 @@ pub(crate) const CASES: &[Case] = &[
     cavity::CAVITY,
     adiabatic::ADIABATIC,
     evaporation::EVAPORATION,
+    falling_film::FALLING_FILM,
     heat_sources::HEAT_SOURCES,
     walls::WALLS,
     ledger::LEDGER,

@@ -3,7 +3,7 @@
 use super::rows;
 use crate::device::refuse_on_gpu;
 use crate::{Case, Options, Row};
-use corpuscle_dew::drops::{Cap, Drop, DropLaws, Drops, Patch, Retention, Surfaces, WATER_DENSITY};
+use corpuscle_dew::drops::{Cap, Drop, DropLaws, Drops, Patch, Retention, SurfaceWater, Surfaces, WATER_DENSITY};
 use corpuscle_model::{CompensatedSum, ModelError};
 use corpuscle_solids::{Pose, Shape, Solid};
 use std::f64::consts::PI;
@@ -62,6 +62,7 @@ pub(super) fn laws(friction: f64, contact_angle: f64, smallest_radius: f64) -> D
         gravity: [0.0, 0.0, -GRAVITY],
         smallest_radius,
         density: WATER_DENSITY,
+        time_factor: 1.0,
     }
 }
 
@@ -76,7 +77,7 @@ fn with_sites(laws: DropLaws, side: f64, patches: Vec<Patch>, sites_per_area: f6
     let solid = Solid::of_shape(shape, Pose::new([-0.005, 0.0, 0.0], [0.0; 3]));
     let surfaces = Surfaces {
         solids: Arc::from([solid]),
-        sites_per_area: vec![sites_per_area],
+        water: vec![SurfaceWater::Drops { sites_per_area }],
         patches,
         room: [[-1.0; 3], [1.0; 3]],
     };

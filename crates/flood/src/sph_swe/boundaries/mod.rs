@@ -95,15 +95,11 @@ impl EdgeRules {
         left
     }
 
-    /// How far beyond a side a position is, m; negative inside.
-    pub fn beyond(&self, side: u8, x: f64, y: f64) -> f64 {
+    /// How far a position is beyond the side that it is farthest beyond, m; negative inside.
+    pub fn beyond(&self, x: f64, y: f64) -> f64 {
         let bounds = &self.bounds;
-        match side {
-            0 => bounds.x_min - x,
-            1 => x - bounds.x_max,
-            2 => bounds.y_min - y,
-            _ => y - bounds.y_max,
-        }
+        let along_x = (bounds.x_min - x).max(x - bounds.x_max);
+        along_x.max(bounds.y_min - y).max(y - bounds.y_max)
     }
 }
 

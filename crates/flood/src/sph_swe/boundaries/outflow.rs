@@ -38,7 +38,7 @@ impl SphSweFlood {
                 (Some(_), Some(_)) => {}
             }
             particle.outside = side;
-            side.is_none_or(|side| edges.beyond(side, particle.x, particle.y) < BEYOND * particle.h)
+            side.is_none() || edges.beyond(particle.x, particle.y) < BEYOND * particle.h
         });
     }
 }

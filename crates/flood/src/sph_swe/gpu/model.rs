@@ -14,7 +14,9 @@ use crate::sph_swe::step::CELL_OVER_H;
 use crate::sph_swe::{DENSITY, SphSweFlood, State};
 use crate::zone::Source;
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming, wait_for};
-use corpuscle_model::{Advance, AdvanceObserver, CompensatedSum, Glance, GpuModel, Model, ModelError, ModelProgress};
+use corpuscle_model::{
+    Advance, AdvanceObserver, CompensatedSum, CpuOnly, Glance, GpuModel, Model, ModelError, ModelProgress,
+};
 use corpuscle_scene::{SmoothingForm, Table};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -25,11 +27,20 @@ pub(in crate::sph_swe) fn failed(error: &GpuError) -> ModelError {
     ModelError::Device(error.to_string())
 }
 
+impl SphSweFlood {
+    /// Why this flood runs on the CPU only, where it does.
+    pub(in crate::sph_swe) fn on_cpu_only(&self) -> Option<CpuOnly> {
+        (self.settings.sph_swe.smoothing == SmoothingForm::Rate).then_some(CpuOnly {
+            what: "flood.sph_swe.smoothing = \"rate\" computes on the CPU only",
+            remedy: "leave `--backend gpu` out, or take \"density\"",
+        })
+    }
+}
+
 impl GpuModel for SphSweFlood {
     fn use_gpu(&mut self, gpu: Gpu) -> Result<(), ModelError> {
-        if self.settings.sph_swe.smoothing == SmoothingForm::Rate {
-            let what = "flood.sph_swe.smoothing = \"rate\" computes on the CPU only: leave `--backend gpu` out, or take \"density\"";
-            return Err(ModelError::Setup(what.into()));
+        if let Some(CpuOnly { what, remedy }) = self.on_cpu_only() {
+            return Err(ModelError::Setup(format!("{what}: {remedy}")));
         }
         self.open_gpu(gpu).map_err(|error| ModelError::Setup(error.to_string()))
     }

@@ -1,7 +1,7 @@
 //! Checks of `[[dew.solid]]`.
 
 use crate::check::{Check, Checked, is_same_file};
-use crate::dew::{Dew, Material, Shape, Solid, WineGlass};
+use crate::dew::{Dew, Material, Scheme, Shape, Solid, Wetting, WineGlass};
 use crate::{Problem, Series};
 
 /// A solid hotter than this glows: most of its heat is light, °C.
@@ -31,8 +31,24 @@ impl Check {
             self.heat_sources(&key, dew, solid)?;
             self.solid_faces(&key, solid)?;
             solid.sites_per_m2.map_or(Ok(()), |sites| self.above(&format!("{key}.sites_per_m2"), sites, 0.0))?;
+            self.wetting(&key, dew, solid)?;
         }
         Ok(())
+    }
+
+    fn wetting(&self, key: &str, dew: &Dew, solid: &Solid) -> Checked {
+        if solid.wetting == Wetting::Drops {
+            return Ok(());
+        }
+        self.require(&format!("{key}.sites_per_m2"), solid.sites_per_m2.is_none(), || {
+            "is of drops, and with wetting = \"film\" there are none; leave it out".into()
+        })?;
+        self.require(&format!("{key}.wetting"), dew.scheme == Scheme::Physical, || {
+            "= \"film\" goes with scheme = \"physical\" only, where water has a viscosity".into()
+        })?;
+        self.require("dew.drops.viscosity_pa_s", dew.drops.viscosity_pa_s > 0.0, || {
+            format!("must be above 0 where a solid has a film ({key}.wetting), which its viscosity brakes")
+        })
     }
 
     fn solid_faces(&self, key: &str, solid: &Solid) -> Checked {
