@@ -45,7 +45,7 @@ pub use fluid::{DeviceWater, Droplet, Fluid, FluidPainter, FluidPass, FluidStyle
 pub use formats::{COLOUR_FORMAT, DEPTH_FORMAT};
 pub use inlay::{Inlay, InlayPainter};
 pub use light::{Backdrop, Light};
-pub use overlay::{Axes, AxisOnPage, Border, Key, KeyPosition, LineStyle, Mark, Overlay, inset_margin};
+pub use overlay::{Axes, AxisOnPage, Border, Key, KeyPosition, LineStyle, Mark, Overlay};
 pub use renderer::Renderer;
 pub use solids::{FarSide, Solid, SolidStyle};
 pub use stage::Stage;

@@ -10,9 +10,6 @@ use corpuscle_drawing::ticks;
 const TICK: f64 = 6.0;
 const NUMBER: f64 = 18.0;
 const NAME: f64 = 24.0;
-/// Height of numbers and names, and their least distance from the page's border.
-const TEXT_HEIGHT: f64 = 12.0;
-const BORDER: f64 = 4.0;
 /// From the upper end of an axis to its name above it.
 const NAME_ABOVE: f64 = 16.0;
 /// Space of a step between ticks at least, and steps at most.
@@ -75,22 +72,18 @@ impl Axes {
             let Some(at) = page.position(point) else { continue };
             let away = |far: f64| [at[0] + far * out[0], at[1] + far * out[1]];
             let text = label(value, step);
-            widest = widest.max(width(&text));
-            let position = if page.holds(at) { whole(page, away(NUMBER), anchor(out), &text) } else { away(NUMBER) };
-            on_edge.push(([at, away(TICK)], position, text));
+            widest = widest.max(LETTER * text.chars().count() as f64);
+            on_edge.push(([at, away(TICK)], away(NUMBER), text));
         }
         let name = ["x", "y", "z"][axis];
         let name = if unit.is_empty() { name.to_owned() } else { format!("{name}, {unit}") };
         let away = NUMBER + NAME + if anchor(out) == Anchor::Middle { 0.0 } else { widest - 12.0 };
         let mut at: [f64; 2] = std::array::from_fn(|k| 0.5 * (one[k] + other[k]) + away * out[k]);
-        let is_cut = at[0] - width(&name) <= 0.0;
+        let is_cut = at[0] - LETTER * name.chars().count() as f64 <= 0.0;
         if anchor(out) == Anchor::End && is_cut {
             // Beside the numbers there is no room: above the axis.
             let top = if one[1] < other[1] { one } else { other };
             at = [top[0], top[1] - NAME_ABOVE];
-        }
-        if page.holds(std::array::from_fn(|k| 0.5 * (one[k] + other[k]))) {
-            at = whole(page, at, anchor(out), &name);
         }
         Some(AxisOnPage { line: [one, other], ticks: on_edge, name: (at, name), anchor: anchor(out) })
     }
@@ -120,24 +113,6 @@ impl Axes {
     }
 }
 
-/// Width of a text.
-fn width(text: &str) -> f64 {
-    LETTER * text.chars().count() as f64
-}
-
-/// The position nearest to one at which no part of a text is beyond the page's border.
-fn whole(page: &Sheet<'_>, at: [f64; 2], anchor: Anchor, text: &str) -> [f64; 2] {
-    let width = width(text);
-    let before = match anchor {
-        Anchor::Start => 0.0,
-        Anchor::Middle => 0.5 * width,
-        Anchor::End => width,
-    };
-    let least = [BORDER + before, BORDER + 0.5 * TEXT_HEIGHT];
-    let most = [page.size[0] - BORDER - width + before, page.size[1] - BORDER - 0.5 * TEXT_HEIGHT];
-    std::array::from_fn(|k| at[k].min(most[k]).max(least[k]))
-}
-
 /// The direction across an edge on the page, away from the middle of the box.
 fn outwards(one: [f64; 2], other: [f64; 2], middle: [f64; 2], long: f64) -> [f64; 2] {
     let across = [(other[1] - one[1]) / long, (one[0] - other[0]) / long];
@@ -151,48 +126,5 @@ fn anchor(out: [f64; 2]) -> Anchor {
         ..-0.5 => Anchor::End,
         0.5.. => Anchor::Start,
         _ => Anchor::Middle,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Left and right end of a text.
-    fn extent(at: [f64; 2], anchor: Anchor, text: &str) -> [f64; 2] {
-        let before = match anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => 0.5,
-            Anchor::End => 1.0,
-        };
-        [at[0] - before * width(text), at[0] + (1.0 - before) * width(text)]
-    }
-
-    #[test]
-    fn numbers_and_names_of_what_is_on_the_page_are_whole() {
-        let (from, to) = ([0.0, 0.0, 0.0], [2000.0, 1000.0, 300.0]);
-        let stage = Stage::new(from, to);
-        let axes = Axes { from, to, unit: "m".into(), heights: 1.0 };
-        let size = [300.0, 180.0];
-        let mut moved = 0;
-        for turn in 0..24 {
-            for zoom in [0.9, 1.0, 1.1, 1.2] {
-                let camera = Camera::orbit(&stage, [0.26 * f64::from(turn), 0.4], 0.5, 300.0 / 180.0, 0.0).nearer(zoom);
-                let sheet = Sheet { stage: &stage, camera: &camera, size };
-                for axis in axes.on_page(&stage, &camera, size) {
-                    for (tick, at, number) in axis.ticks.iter().filter(|(tick, ..)| sheet.holds(tick[0])) {
-                        let [left, right] = extent(*at, axis.anchor, number);
-                        assert!(
-                            left >= 0.0 && right <= size[0],
-                            "{number} from {left} to {right}, turn {turn}, {zoom}"
-                        );
-                        assert!(at[1] >= 0.5 * TEXT_HEIGHT && at[1] <= size[1] - 0.5 * TEXT_HEIGHT, "{number}: {at:?}");
-                        let out = [tick[1][0] - tick[0][0], tick[1][1] - tick[0][1]].map(|part| part / TICK * NUMBER);
-                        moved += usize::from((0..2).any(|k| (tick[0][k] + out[k] - at[k]).abs() > 1.0));
-                    }
-                }
-            }
-        }
-        assert!(moved > 10, "{moved} numbers would have been cut");
     }
 }

@@ -26,11 +26,6 @@ const CAPTION: f64 = 0.6;
 /// Space round an inset.
 const PADDING: f64 = 10.0;
 
-/// The margin on the right in which an inset stands beside axes, part of the picture's height.
-pub fn inset_margin(inset: &Figure) -> f64 {
-    (inset.size()[0] + 2.0 * PADDING + 2.0 * MARGIN) / HEIGHT
-}
-
 /// The overlay of a picture. Empty texts are left out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlay {
@@ -60,7 +55,7 @@ pub struct Overlay {
     pub north: bool,
     /// A text below the title.
     pub caption: String,
-    /// A small drawing in a lower corner, where no legend stands; beside axes with a legend below or beside them, see [`inset_margin`].
+    /// A small drawing in a lower corner, where no legend stands.
     pub inset: Option<Figure>,
 }
 
@@ -169,11 +164,6 @@ impl Sheet<'_> {
         let [x, y] = self.camera.project(self.stage, width / height, point)?;
         Some([x * width, y * height])
     }
-
-    /// Whether a position is on the page.
-    fn holds(&self, position: [f64; 2]) -> bool {
-        (0..2).all(|k| position[k] >= 0.0 && position[k] <= self.size[k])
-    }
 }
 
 impl Page<'_> {
@@ -248,17 +238,11 @@ impl Overlay {
         let Some(inset) = &self.inset else { return };
         let [width, height] = inset.size().map(|length| length + 2.0 * PADDING);
         let has_legend = self.key.is_some() || !self.lines.is_empty();
-        let corner = |axes: &Axes| Some([page.position(axes.to)?[0], page.position(axes.from)?[1]]);
-        let at_border = page.size[0] - MARGIN - width;
+        let corner = |axes: &Axes| Some([page.position(axes.to)?[0] - PADDING, page.position(axes.from)?[1] - PADDING]);
         let [left, bottom] = match (self.key_position, self.axes.as_ref().and_then(corner)) {
-            // Legend and numbers stand round the axes, so it lies beside them, or within where there is no room.
-            (KeyPosition::Below | KeyPosition::Beside, Some([right, bottom])) if at_border >= right + PADDING => {
-                [at_border, bottom]
-            }
-            (KeyPosition::Below | KeyPosition::Beside, Some([right, bottom])) => {
-                [right - PADDING - width, bottom - PADDING]
-            }
-            (KeyPosition::Corner, _) if has_legend => [at_border, bottom_right],
+            // Legend and numbers stand round the axes, so it lies within them.
+            (KeyPosition::Below | KeyPosition::Beside, Some([right, bottom])) => [right - width, bottom],
+            (KeyPosition::Corner, _) if has_legend => [page.size[0] - MARGIN - width, bottom_right],
             _ => [MARGIN, HEIGHT - MARGIN],
         };
         page.svg.rectangle([left, bottom - height], [width, height], "inset");
@@ -307,29 +291,6 @@ fn axis_unit(longest: f64, unit: &str) -> (f64, String) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn an_inset_stands_beside_the_axes_where_there_is_room_and_else_within() {
-        let inset = Svg::default().finish([240.0, 120.0], "chart");
-        let left = |right_margin: f64| {
-            let stage = Stage::new([0.0; 3], [1.0, 1.0, 0.0]);
-            let camera = Camera::plan(&stage, 1.0, [0.1, right_margin, 0.16, 0.1]);
-            let axes = Axes { from: [0.0; 3], to: [1.0, 1.0, 0.0], unit: String::new(), heights: 1.0 };
-            let overlay = Overlay {
-                key_position: KeyPosition::Below,
-                axes: Some(axes),
-                inset: Some(inset.clone()),
-                ..Overlay::default()
-            };
-            let text = overlay.figure(&stage, &camera, [720, 720]).to_string();
-            let tag = text.split('<').find(|tag| tag.contains("\"inset\"")).unwrap().to_owned();
-            let x: f64 = tag.split("x=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
-            let edge = Sheet { stage: &stage, camera: &camera, size: [720.0; 2] }.position([1.0, 0.0, 0.0]).unwrap();
-            (x - edge[0], x + 260.0 - edge[0])
-        };
-        assert!(left(inset_margin(&inset)).0 > 0.0);
-        assert!(left(0.1).1 < 0.0);
-    }
 
     #[test]
     fn captions_are_broken_between_words() {

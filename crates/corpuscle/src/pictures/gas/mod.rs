@@ -12,7 +12,6 @@ use corpuscle_model::{Container, Frame, ParticleSet, Path};
 use corpuscle_output::{GasKey, gas_key};
 use corpuscle_render::{
     BallStyle, Balls, Camera, ColourTable, Drawable, Floor, KeyPosition, Lens, Light, Shading, Stage, TubeStyle, Tubes,
-    inset_margin,
 };
 use corpuscle_scene::{Gas, padded};
 use sides::Plates;
@@ -112,10 +111,7 @@ impl GasPicture {
             let camera = context.camera_offset.moved(Camera::plan(&stage, aspect, IN_WINDOW));
             return View { stage, camera, container, key_position: KeyPosition::Corner };
         }
-        // An inset stands to the right of the box, not over the balls.
-        let right = context.inset.as_ref().map_or(0.0, inset_margin);
-        let with_inset = |[left, own, below, above]: [f64; 4]| [left, own.max(right), below, above];
-        let positions = [(KeyPosition::Below, with_inset(BELOW)), (KeyPosition::Beside, with_inset(BESIDE))];
+        let positions = [(KeyPosition::Below, BELOW), (KeyPosition::Beside, BESIDE)];
         let [below, beside] = positions.map(|(key_position, margins)| View {
             stage,
             camera: context.camera_offset.moved(Camera::plan(&stage, aspect, margins)),
