@@ -19,10 +19,11 @@ const FLOODS: [(&str, f64, f64); 3] =
     [("flood/cuboid", 1.7, 1e-3), ("flood/cylinder", 1.7, 1e-3), ("flood/rough-terrain", 2.0, 1e-2)];
 
 /// Scenes, the time from which they are compared, and a distance of particles, m, at which software in place of a GPU does hundred steps in seconds.
-const DEW: [(&str, f64, &str); 5] = [
+const DEW: [(&str, f64, &str); 6] = [
     ("dew/pane", 0.15, "0.003"),
     ("dew/lens", 0.1, "0.003"),
     ("dew/windscreen", 0.1, "0.0025"),
+    ("dew/breath", 0.3, "0.0025"),
     ("dew/three-boundaries", 0.003, "0.00225"),
     ("dew/glassware", 0.01, "0.006"),
 ];

@@ -6,8 +6,8 @@ use corpuscle_gpu::{Image, require_gpu};
 use corpuscle_model::SolidShape;
 use corpuscle_render::{
     Axes, BallPainter, BallStyle, Border, Camera, Cap, CapPainter, ColourTable, Drawable, Droplet, Floor, FluidPainter,
-    FluidStyle, HeightField, Key, KeyPosition, Light, LineStyle, Mark, Overlay, Renderer, Shading, Solid, SolidStyle,
-    Stage, Target, Terrain, TubePainter, TubeStyle, WaterSides, box_edges, natural_colours,
+    FluidStyle, FogPatch, HeightField, Key, KeyPosition, Light, LineStyle, Mark, Overlay, Renderer, Shading, Solid,
+    SolidStyle, Stage, Target, Terrain, TubePainter, TubeStyle, WaterSides, box_edges, natural_colours,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -286,6 +286,96 @@ fn a_picture_without_background_shows_the_same_things() {
     }
     assert_eq!(alone.pixel(2, 2)[3], 0);
     assert!(counts.iter().all(|count| *count > 500), "{counts:?}");
+}
+
+/// A pane between two balls, half of it fogged, the other half on its far side, with drops on it; parts left out: ball, fog, away (fog on the far side), glass, caps.
+fn pane_alone(table: &Table, left_out: &str) -> Image {
+    let gpu = table.renderer.gpu();
+    let stage = Stage::new([0.0, 0.0, 0.0], [10.0, 8.0, 4.0]);
+    let camera = Camera::orbit(&stage, [-1.2, 0.2], 0.6, ASPECT, 0.0);
+    let shape = |low: [f64; 3], high: [f64; 3]| SolidShape {
+        bounds: [low, high],
+        distance: Arc::new(move |at| {
+            (0..3).map(|k| (low[k] - at[k]).max(at[k] - high[k])).fold(f64::NEG_INFINITY, f64::max)
+        }),
+    };
+    let glass = SolidStyle::Glass([225, 240, 232]);
+    let mut glass = Solid::new(&table.renderer, &stage, &shape([2.0, 2.0, 0.2], [8.0, 2.3, 3.8]), glass);
+    let style = BallStyle::new(viridis());
+    let balls = [([4.5, 6.0, 2.0], 1.2, 0.8), ([3.5, 0.5, 1.2], 0.5, 0.2)];
+    let mut ball = BallPainter::new(&table.renderer).balls(gpu, &stage, &style, balls);
+    let cap = |k: usize| Cap {
+        position: [2.6 + 1.2 * (k % 5) as f64, 2.0, 1.2 + 1.0 * (k / 5) as f64],
+        radius: 0.25,
+        normal: [0.0, -1.0, 0.0],
+        height: 0.2,
+    };
+    let patch = |k: usize, [x, y]: [f64; 2], outwards: f64| FogPatch {
+        position: [x + 0.5 * (k % 6) as f64, y, 0.45 + 0.5 * (k / 6) as f64],
+        half_width: 0.25,
+        normal: [0.0, outwards, 0.0],
+        covered: 0.5,
+    };
+    let painter = CapPainter::new(&table.renderer);
+    let mut caps = painter.caps(gpu, &stage, (0..5).map(cap), []);
+    let mut fog = painter.caps(gpu, &stage, [], (0..42).map(|k| patch(k, [5.25, 2.0], -1.0)));
+    let far = painter.caps(gpu, &stage, [], (0..42).map(|k| patch(k, [2.25, 2.3], 1.0)));
+    let mut far = far.on_far_sides(glass.far_side());
+    let all: [(char, &mut dyn Drawable); 5] =
+        [('b', &mut ball), ('a', &mut far), ('g', &mut glass), ('f', &mut fog), ('c', &mut caps)];
+    let mut things: Vec<&mut dyn Drawable> = Vec::new();
+    things.extend(all.into_iter().filter(|(letter, _)| !left_out.contains(*letter)).map(|(_, thing)| thing));
+    table.draw(&stage, &camera, &Light::dim_room().from_azimuth(-2.2), &mut things, &Overlay::default())
+}
+
+/// The opacities of all pixels.
+fn opacities(image: &Image) -> Vec<u8> {
+    image.rgba.chunks(4).map(|pixel| pixel[3]).collect()
+}
+
+#[test]
+fn fog_on_the_far_side_of_glass_is_seen_through_it_and_nowhere_else() {
+    let Some(table) = Table::open("fog on the far side") else { return };
+    let differing = |one: &str, other: &str| -> Vec<usize> {
+        let (one, other) = (pane_alone(&table, one), pane_alone(&table, other));
+        let pairs = one.rgba.chunks(4).zip(other.rgba.chunks(4)).enumerate();
+        pairs.filter(|(_, (a, b))| (0..3).any(|k| a[k].abs_diff(b[k]) > 2)).map(|(at, _)| at).collect()
+    };
+    let fogged = differing("fc", "fca");
+    let pane = differing("bfca", "bfcag");
+    let ball = differing("fcag", "bfcag");
+    // On the pane alone, but for the ball behind it, which is seen blurred.
+    // A clear pane's outermost pixels hardly differ from what is behind, so its neighbours count as pane.
+    let is_beside_pane = |at: usize| pane.contains(&(at - 1)) || pane.contains(&at) || pane.contains(&(at + 1));
+    let outside: Vec<_> = fogged.iter().filter(|at| !is_beside_pane(**at) && !ball.contains(at)).collect();
+    assert!(fogged.len() > 1500 && outside.is_empty(), "{} and {outside:?}", fogged.len());
+    // The ball before the pane hides it.
+    let stage = Stage::new([0.0, 0.0, 0.0], [10.0, 8.0, 4.0]);
+    let camera = Camera::orbit(&stage, [-1.2, 0.2], 0.6, ASPECT, 0.0);
+    let [u, v] = camera.project(&stage, ASPECT, [3.5, 0.5, 1.2]).unwrap();
+    let middle = (v * f64::from(SIZE[1])) as usize * SIZE[0] as usize + (u * f64::from(SIZE[0])) as usize;
+    assert!(pane.contains(&(middle + 30)) && !fogged.contains(&middle), "at {u:.3}, {v:.3}");
+}
+
+#[test]
+fn glass_and_fog_without_background_let_through_what_is_behind() {
+    let Some(table) = Table::open("glass without background") else { return };
+    let target = Target::new(table.renderer.gpu(), SIZE, 2).unwrap().without_background(true);
+    let bare = Table { renderer: Renderer::new(table.renderer.gpu()), target };
+    let whole = pane_alone(&bare, "");
+    same_as_reference("pane-alone", &whole);
+    let [glass, fogged, nothing] = ["bafc", "bac", "bagfc"].map(|left_out| opacities(&pane_alone(&bare, left_out)));
+    // The clear pane lets most light through, fog less, and both hide something.
+    assert!(nothing.iter().all(|opacity| *opacity == 0));
+    let seen: Vec<usize> = (0..glass.len()).filter(|at| glass[*at] > 0).collect();
+    let faint = seen.iter().filter(|at| glass[**at] < 128).count();
+    assert!(seen.len() > 3000 && 4 * faint > 3 * seen.len(), "{faint} of {}", seen.len());
+    let denser: Vec<usize> = seen.into_iter().filter(|at| fogged[*at] > glass[*at] + 20).collect();
+    assert!(denser.len() > 1000 && denser.iter().all(|at| fogged[*at] < 255), "{}", denser.len());
+    for part in ["b", "a", "g", "f", "c"] {
+        let off = difference(&pane_alone(&bare, part), &whole);
+        assert!(off > OTHER, "the pane without {part}: {off:.2}");
+    }
 }
 
 #[test]

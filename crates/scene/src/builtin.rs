@@ -48,7 +48,7 @@ pub(crate) const GAS: &[Builtin] = builtin_scenes![
 
 /// Those of dew.
 pub(crate) const DEW: &[Builtin] =
-    builtin_scenes!["dew/pane", "dew/lens", "dew/windscreen", "dew/glassware", "dew/three-boundaries",];
+    builtin_scenes!["dew/pane", "dew/lens", "dew/windscreen", "dew/breath", "dew/glassware", "dew/three-boundaries",];
 
 /// All of them, by model.
 pub fn scenes() -> impl Iterator<Item = Builtin> {

@@ -2,7 +2,8 @@
 
 use crate::pipeline::PipelineDescriptor;
 use crate::shaders::Shader;
-use crate::{COLOUR_FORMAT, Renderer, Through, shaders};
+use crate::solids::FarSide;
+use crate::{COLOUR_FORMAT, DEPTH_FORMAT, Renderer, Through, shaders};
 use corpuscle_gpu::{GroupLayout, texture_2d, wgpu};
 
 /// Format of the area that droplets cover.
@@ -54,12 +55,46 @@ impl Fog {
 
     /// Draws the fog of the fine ones among `count` caps over what is behind.
     pub(super) fn draw(&self, frame: &mut Through<'_>, caps: &wgpu::BindGroup, count: u32) {
+        let depth = frame.behind_depth;
+        self.draw_on(frame, depth, caps, count);
+    }
+
+    /// The same on the far sides of glass that is drawn later.
+    pub(super) fn draw_on_far_sides(
+        &self,
+        frame: &mut Through<'_>,
+        sides: &[FarSide],
+        caps: &wgpu::BindGroup,
+        count: u32,
+    ) {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let depth = texture_2d(frame.gpu, "far sides", frame.size, DEPTH_FORMAT, usage);
+        let depth = depth.expect("as large as the target, which is there");
+        let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
+        {
+            let mut pass = frame.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("far sides"),
+                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                    view: &depth,
+                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                    stencil_ops: None,
+                }),
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            pass.set_bind_group(0, frame.view, &[]);
+            sides.iter().for_each(|side| side.paint(&mut pass));
+        }
+        self.draw_on(frame, &depth, caps, count);
+    }
+
+    /// The same on surfaces of a depth, where nothing hides them.
+    fn draw_on(&self, frame: &mut Through<'_>, surfaces: &wgpu::TextureView, caps: &wgpu::BindGroup, count: u32) {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let covered =
             texture_2d(frame.gpu, "fog", frame.size, COVERED, usage).expect("as large as the target, which is there");
         let covered = covered.create_view(&wgpu::TextureViewDescriptor::default());
-        let depth = wgpu::BindingResource::TextureView(frame.behind_depth);
-        let depth = self.depth_layout.bind(&frame.gpu.device, &[("behind_depth", depth)]);
+        let [on, hiding] = [surfaces, frame.behind_depth].map(wgpu::BindingResource::TextureView);
+        let depth = self.depth_layout.bind(&frame.gpu.device, &[("behind_depth", on), ("hiding_depth", hiding)]);
         {
             let mut pass = begin(frame, &covered, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
             pass.set_pipeline(&self.cover);

@@ -2,7 +2,9 @@
 #import view
 #import cap
 
+// Depth of the surfaces that fog may lie on, and of what may hide them.
 @group(2) @binding(0) var behind_depth: texture_depth_2d;
+@group(2) @binding(1) var hiding_depth: texture_depth_2d;
 
 // Radius over which a droplet is spread, samples.
 const SPREAD: f32 = 4.0;
@@ -30,7 +32,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u3
     let radius = cap.radius / pixel;
     let facing = dot(cap.out, towards_eye(cap.position));
     let covered = select(1.0, cap.covered, cap.covered > 0.0);
-    let area = PI * radius * radius * covered * max(facing, 0.15);
+    let area = PI * radius * radius * covered * max(abs(facing), 0.15);
     let offset = 2.0 * vec2f(f32(index & 1u), f32(index >> 1u)) - 1.0;
     // Lifted off its surface, so that this does not hide it.
     let lifted = cap.position + (cap.height + 2.0 * pixel) * towards_eye(cap.position);
@@ -51,7 +53,8 @@ fn is_on_surface(cap: CapInstance, corner: Corner, depth: f32) -> bool {
 fn fragment(corner: Corner) -> @location(0) vec4f {
     let from_middle = dot(corner.offset, corner.offset);
     let depth = textureLoad(behind_depth, vec2i(corner.clip.xy), 0);
-    if from_middle > 1.0 || !is_on_surface(caps[corner.number], corner, depth) {
+    let hiding = textureLoad(hiding_depth, vec2i(corner.clip.xy), 0);
+    if from_middle > 1.0 || hiding > depth || !is_on_surface(caps[corner.number], corner, depth) {
         discard;
     }
     // Weight of a kernel whose sum over all samples is 1.

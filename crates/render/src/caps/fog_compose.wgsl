@@ -11,6 +11,11 @@ const TAPS: i32 = 48;
 const BLUR: f32 = 0.045;
 const WHITE: f32 = 0.42;
 
+// A colour with its opacity multiplied in.
+fn weighed(colour: vec4f) -> vec4f {
+    return vec4f(colour.a * colour.rgb, colour.a);
+}
+
 @fragment
 fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     let area = textureLoad(covered, vec2i(pixel.xy), 0).r;
@@ -21,13 +26,15 @@ fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     let part = min(area, 1.0);
     let uv = pixel.xy / view.frame.xy;
     let radius = BLUR * sqrt(part) * vec2f(view.frame.y / view.frame.x, 1.0);
-    var blurred = vec3f(0.0);
+    // With their opacities multiplied in: what is left out of the background weighs nothing.
+    var blurred = vec4f(0.0);
     for (var tap = 0; tap < TAPS; tap++) {
         let angle = GOLDEN_ANGLE * f32(tap);
         let out = sqrt((f32(tap) + 0.5) / f32(TAPS)) * vec2f(cos(angle), sin(angle));
-        blurred += textureSampleLevel(behind, behind_sampler, clamp(uv + radius * out, vec2f(0.0), vec2f(1.0)), 0.0).rgb;
+        blurred += weighed(textureSampleLevel(behind, behind_sampler, clamp(uv + radius * out, vec2f(0.0), vec2f(1.0)), 0.0));
     }
     let all_round = view.sunlight.w * mix(view.horizon.rgb, view.above.rgb, 0.5) + 0.12 * view.sunlight.rgb;
-    let sharp = textureSampleLevel(behind, behind_sampler, uv, 0.0).rgb;
-    return vec4f(mix(sharp, mix(blurred / f32(TAPS), all_round, WHITE), part), 1.0);
+    let sharp = weighed(textureSampleLevel(behind, behind_sampler, uv, 0.0));
+    let seen = mix(sharp, mix(blurred / f32(TAPS), vec4f(all_round, 1.0), WHITE), part);
+    return vec4f(seen.rgb / max(seen.a, 1e-6), seen.a);
 }

@@ -7,7 +7,7 @@ use crate::buffer::{storage, uniform};
 use crate::pipeline::PipelineDescriptor;
 use crate::shaders::Shader;
 use crate::shared::{CapInstance, CapUniforms};
-use crate::solids::Behind;
+use crate::solids::{Behind, FarSide};
 use crate::{Drawable, Renderer, Stage, Through, shaders};
 use corpuscle_gpu::{Gpu, GroupLayout, wgpu};
 use fog::Fog;
@@ -66,6 +66,13 @@ pub struct Caps {
     tools: Arc<Tools>,
     group: wgpu::BindGroup,
     count: u32,
+}
+
+/// Fog on the far sides of glass: to be drawn before the glass, through which it is seen.
+#[derive(Debug)]
+pub struct FarFog {
+    fog: Caps,
+    sides: Vec<FarSide>,
 }
 
 /// Shaders that share the drops' group: of drops, and of the fog of the fine ones.
@@ -133,6 +140,24 @@ impl CapPainter {
         ];
         let group = self.tools.layout.bind(&gpu.device, &resources);
         Caps { tools: self.tools.clone(), group, count: all.len() as u32 }
+    }
+}
+
+impl Caps {
+    /// The fog of these on the far sides of glass.
+    pub fn on_far_sides(self, sides: impl IntoIterator<Item = FarSide>) -> FarFog {
+        FarFog { fog: self, sides: sides.into_iter().collect() }
+    }
+}
+
+impl Drawable for FarFog {
+    fn lets_light_through(&self) -> bool {
+        self.fog.count > 0 && !self.sides.is_empty()
+    }
+
+    fn draw_through(&mut self, frame: &mut Through<'_>) {
+        let Caps { tools, group, count } = &self.fog;
+        tools.fog.draw_on_far_sides(frame, &self.sides, group, *count);
     }
 }
 

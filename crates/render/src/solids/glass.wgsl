@@ -1,4 +1,5 @@
-// Solids of glass: what is behind is seen through them, shifted as by a slab, and what is before is mirrored.
+// Solids of glass: what is behind is seen through them, shifted as by a slab, and what is before is mirrored. Where the background is left out they are as
+// opaque as they keep light back, and where they shine.
 #import light
 #import surface
 
@@ -19,12 +20,24 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     let shifted = corner.position + (bent + to_eye) * 0.03;
     let clip = view.clip_from_world * vec4f(shifted, 1.0);
     let uv = clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5;
-    let seen = textureSampleLevel(behind, behind_sampler, clamp(uv, vec2f(0.0), vec2f(1.0)), 0.0).rgb;
+    let seen = textureSampleLevel(behind, behind_sampler, clamp(uv, vec2f(0.0), vec2f(1.0)), 0.0);
     // Two surfaces mirror; longer ways through the edge take more light (Beer).
     let fresnel = min(2.0 * mirrored(facing, 0.04), 0.9);
     let through = pow(style.colour.rgb, vec3f(1.0 / max(facing, 0.15)));
     let half_way = normalize(view.sun.xyz + to_eye);
     let spark = 1.5 * pow(max(dot(normal, half_way), 0.0), 220.0);
-    let colour = seen * through * (1.0 - fresnel) + surroundings(reflect(-to_eye, normal)) * fresnel;
-    return vec4f(colour + spark * view.sunlight.rgb, 1.0);
+    let passed = through * (1.0 - fresnel);
+    let colour = seen.a * seen.rgb * passed + surroundings(reflect(-to_eye, normal)) * fresnel + spark * view.sunlight.rgb;
+    // One opacity for all colours: of the light from behind that is kept back. No colour is brighter than its opacity: a highlight hides what is behind.
+    let kept_back = 1.0 - (1.0 - seen.a) * dot(passed, vec3f(1.0 / 3.0));
+    let opacity = clamp(max(kept_back, max(colour.r, max(colour.g, colour.b))), 1e-3, 1.0);
+    return vec4f(colour / opacity, opacity);
+}
+
+// The faces that are seen from within: depth alone.
+@fragment
+fn far_side(corner: Corner) {
+    if dot(corner.normal, towards_eye(corner.position)) > 0.0 {
+        discard;
+    }
 }

@@ -28,11 +28,32 @@ pub struct Solid {
     pipeline: wgpu::RenderPipeline,
     /// None for glass, which throws no shadow worth drawing.
     cast: Option<wgpu::RenderPipeline>,
+    /// Of glass: draws the depth of the faces seen from within.
+    far_side: Option<wgpu::RenderPipeline>,
     group: wgpu::BindGroup,
     buffer: wgpu::Buffer,
     count: u32,
     behind: Behind,
     state: u64,
+}
+
+/// The faces of a solid of glass that are seen from within, through the solid: fog on them is seen so too.
+#[derive(Debug, Clone)]
+pub struct FarSide {
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    buffer: wgpu::Buffer,
+    count: u32,
+}
+
+impl FarSide {
+    /// Draws its depth.
+    pub(crate) fn paint(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_vertex_buffer(0, self.buffer.slice(..));
+        pass.draw(0..self.count, 0..1);
+    }
 }
 
 /// The opaque background of a transparent thing, as a bind group.
@@ -117,15 +138,24 @@ impl Solid {
             buffers: &buffers,
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
+        let far_side = || PipelineDescriptor { groups: &groups[..2], ..descriptor }.cast(gpu, "far_side");
         Self {
             pipeline: descriptor.opaque(gpu),
             cast: (!is_glass).then(|| descriptor.cast(gpu, "throw_shadow")),
+            far_side: is_glass.then(far_side),
             group,
             buffer: instances(gpu, "solid", &vertices),
             count: vertices.len() as u32,
             behind,
             state: static_layer::new_state(),
         }
+    }
+
+    /// Its far side, where it is of glass.
+    pub fn far_side(&self) -> Option<FarSide> {
+        let Self { far_side, group, buffer, count, .. } = self;
+        let pipeline = far_side.clone()?;
+        Some(FarSide { pipeline, group: group.clone(), buffer: buffer.clone(), count: *count })
     }
 
     fn paint(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {

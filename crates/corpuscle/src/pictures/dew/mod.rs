@@ -110,14 +110,16 @@ impl Room {
         };
         let faces_eye = |cap: &&Cap| faces(cap.normal, cap.position);
         let gpu = context.renderer.gpu();
-        // Drops on the far side are seen through the solid, so they are drawn before it.
+        // Drops and fog on the far side are seen through the solid, so they are drawn before it.
         let far = drops.iter().filter(|cap| !faces_eye(cap)).copied();
         let mut far = context.caps.caps(gpu, &self.stage, far, []);
         let near = drops.iter().filter(faces_eye).copied();
         let fog = moment.frame.sets.iter().filter(|set| set.name == "unseen").flat_map(fog);
-        let mut near =
-            context.caps.caps(gpu, &self.stage, near, fog.filter(|patch| faces(patch.normal, patch.position)));
-        let mut things: Vec<&mut dyn Drawable> = Vec::new();
+        let (near_fog, far_fog): (Vec<_>, Vec<_>) = fog.partition(|patch| faces(patch.normal, patch.position));
+        let far_sides = self.solids.iter().filter_map(Solid::far_side);
+        let mut far_fog = context.caps.caps(gpu, &self.stage, [], far_fog).on_far_sides(far_sides);
+        let mut near = context.caps.caps(gpu, &self.stage, near, near_fog);
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut far_fog];
         if !context.target.transparent {
             things.push(&mut self.floor);
         }
