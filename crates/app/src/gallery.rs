@@ -223,6 +223,7 @@ const PICTURES: &[(&str, &[u8])] = pictures![
     "dew-windscreen",
     "dew-glassware",
     "dew-three-boundaries",
+    "dew-breath",
 ];
 
 /// The picture of a built-in scene.
