@@ -50,7 +50,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     refuse_on_gpu("films, which stay with the CPU")?;
     let mut rows = Vec::new();
     let mut lost = 0.0_f64;
-    let kinds: [(&str, fn(f64) -> Surface); 4] = [
+    let kinds: [Kind; 4] = [
         ("upright", |width| plate(width, 0.0, 90.0)),
         ("turned_30_deg", |width| plate(width, 30.0, 90.0)),
         ("inclined_20_deg_turned_45_deg", |width| plate(width, 45.0, 20.0)),
@@ -81,6 +81,9 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     rows.push(Row::at_most(name, "water_lost", lost, "", 1e-12));
     Ok(rows)
 }
+
+/// A name, and a surface with patches of a width, m.
+type Kind = (&'static str, fn(f64) -> Surface);
 
 /// Patches of a solid, and the thickness of the film on each in a steady state, m; none where it is not compared.
 struct Surface {
