@@ -28,6 +28,8 @@ struct Stream {
 /// The films of all solids that have some.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Films {
+    /// Whether a patch has a film.
+    is_any: bool,
     /// The gravity for which the streams were found.
     gravity: [f64; 3],
     streams: Vec<Stream>,
@@ -60,18 +62,15 @@ impl Films {
                 site_of[piece.patch as usize] = Some(piece.site);
             }
         }
-        Self { gravity: [f64::NAN; 3], site_of, ..Self::default() }
-    }
-
-    fn is_any(&self) -> bool {
-        self.site_of.iter().any(Option::is_some)
+        let is_any = site_of.iter().any(Option::is_some);
+        Self { gravity: [f64::NAN; 3], is_any, site_of, ..Self::default() }
     }
 }
 
 impl Drops {
     /// Lets the films flow for a time, s.
     pub(super) fn flow(&mut self, time: f64) {
-        if !self.films.is_any() {
+        if !self.films.is_any {
             return;
         }
         if self.films.gravity != self.laws.gravity {
@@ -90,6 +89,9 @@ impl Drops {
 
     /// Drops on solids with a film become part of it.
     pub(super) fn join_films(&mut self) {
+        if !self.films.is_any {
+            return;
+        }
         let (joining, staying): (Vec<Drop>, _) =
             self.state.drops.iter().partition(|drop: &&Drop| self.has_film(drop.solid));
         self.state.drops = staying;
