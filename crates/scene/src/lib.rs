@@ -43,6 +43,7 @@ pub use model::{ModelScene, ModelTables, ReadError, SceneKind, Tables, kinds, re
 pub use nesting::{TOO_DEEP, too_deep};
 pub use series::{Series, Table};
 pub use terrain::*;
+pub use units::us_name;
 
 use serde::{Deserialize, Serialize};
 

@@ -64,7 +64,8 @@ fn si_name(key: &str) -> Option<String> {
     ENDS.iter().find_map(|(us, si, _)| key.strip_suffix(us).map(|stem| format!("{stem}{si}")))
 }
 
-fn us_name(key: &str) -> Option<String> {
+/// The name that a key in metres below `[flood]` has in a scene in feet (`flood.units = "us"`); none where it has no such unit.
+pub fn us_name(key: &str) -> Option<String> {
     ENDS.iter().find_map(|(us, si, _)| key.strip_suffix(si).map(|stem| format!("{stem}{us}")))
 }
 

@@ -57,8 +57,7 @@ impl Films {
     pub(super) fn new(patches: &[Patch], water: &[SurfaceWater], sites: &Sites) -> Self {
         let mut site_of = vec![None; patches.len()];
         for piece in &sites.pieces {
-            let solid = patches[piece.patch as usize].solid as usize;
-            if matches!(water[solid], SurfaceWater::Film) {
+            if water[patches[piece.patch as usize].solid as usize].is_film() {
                 site_of[piece.patch as usize] = Some(piece.site);
             }
         }
@@ -121,7 +120,7 @@ impl Drops {
             let mut distance = width;
             if gravity > 0.0 {
                 let down = along.map(|part| part / gravity);
-                for (other, part) in self.below(patch, down) {
+                for (other, part) in self.below(at, down) {
                     distance += part * (distance_along(patch, &self.patches[other], down) - width);
                     targets.extend(self.films.site_of[other].map(|site| (site, part)));
                 }
@@ -143,12 +142,12 @@ impl Drops {
     /// The patches to which the water of one flows in the direction `down`, each with its part. They are those on which the patch, a square along the
     /// solid's own axes, lies once it is moved down by its own width, in proportion to the areas in common: on a flat side water so flows in just that direction.
     /// A part may stay on the patch itself. What then lies beyond an edge leaves; elsewhere the parts make one.
-    fn below(&self, patch: &Patch, down: [f64; 3]) -> Vec<(usize, f64)> {
+    fn below(&self, at: usize, down: [f64; 3]) -> Vec<(usize, f64)> {
+        let patch = &self.patches[at];
         let width = 2.0 * patch.half_width;
         let axes = self.axes_of(patch);
-        let moved = down.map(|along| width * along);
+        let ahead: [f64; 3] = std::array::from_fn(|axis| patch.position[axis] + width * down[axis]);
         let mut near = Vec::new();
-        let ahead: [f64; 3] = std::array::from_fn(|axis| patch.position[axis] + moved[axis]);
         self.patch_grid.near(ahead, 2.0 * width, 0.0, |other| near.push(other));
         near.sort_unstable();
         near.dedup();
@@ -169,13 +168,14 @@ impl Drops {
             return below;
         }
         // What stays is as computed, and the others get the rest. Where there is none, as where the surface leaves the air, it leaves.
-        let is_own = |other: usize| self.patches[other].position == patch.position;
-        let stays: f64 = below.iter().filter(|&&(other, _)| is_own(other)).map(|&(_, part)| part).sum();
-        let goes: f64 = below.iter().filter(|&&(other, _)| !is_own(other)).map(|&(_, part)| part).sum();
+        let sum = |is_own: bool| -> f64 {
+            below.iter().filter(|&&(other, _)| (other == at) == is_own).map(|&(_, part)| part).sum()
+        };
+        let [stays, goes] = [sum(true), sum(false)];
         if goes < LEAST_PART {
             return Vec::new();
         }
-        below.iter_mut().filter(|(other, _)| !is_own(*other)).for_each(|(_, part)| *part *= (1.0 - stays) / goes);
+        below.iter_mut().filter(|(other, _)| *other != at).for_each(|(_, part)| *part *= (1.0 - stays) / goes);
         below
     }
 

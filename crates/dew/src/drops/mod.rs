@@ -67,6 +67,11 @@ pub enum SurfaceWater {
 }
 
 impl SurfaceWater {
+    /// Whether it is a film.
+    pub fn is_film(self) -> bool {
+        self == Self::Film
+    }
+
     /// Density of nucleation sites, 1/m2; a film needs none.
     pub fn sites_per_area(self) -> f64 {
         match self {
@@ -364,7 +369,7 @@ impl Drops {
 
     /// Whether water lies on a solid as a film.
     fn has_film(&self, solid: u32) -> bool {
-        matches!(self.water[solid as usize], SurfaceWater::Film)
+        self.water[solid as usize].is_film()
     }
 
     fn is_in_room(&self, position: [f64; 3]) -> bool {

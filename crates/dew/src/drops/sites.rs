@@ -96,7 +96,7 @@ impl Sites {
         let of_patches: Vec<f64> = patches.iter().map(Patch::reach).collect();
         let patch_grid = Grid::new(patches.iter().map(|patch| patch.position), &of_patches);
         let mut candidates = Vec::new();
-        let with_drops = (0..solids.len()).filter(|&number| !matches!(water[number], SurfaceWater::Film));
+        let with_drops = (0..solids.len()).filter(|&number| !water[number].is_film());
         for number in with_drops {
             let solid = &solids[number];
             let per_area = water[number].sites_per_area();
@@ -350,7 +350,7 @@ const SITE_SEARCH_DOUBLINGS: u32 = 4;
 
 /// Gives each patch with a film a site of its own.
 fn add_films(pairs: &mut Vec<(u32, u32)>, sites: &mut Vec<Site>, patches: &[Patch], water: &[SurfaceWater]) {
-    let is_film = |patch: &Patch| matches!(water[patch.solid as usize], SurfaceWater::Film);
+    let is_film = |patch: &Patch| water[patch.solid as usize].is_film();
     for (number, patch) in patches.iter().enumerate().filter(|(_, patch)| is_film(patch)) {
         let Patch { solid, position, normal, .. } = *patch;
         pairs.push((number as u32, sites.len() as u32));

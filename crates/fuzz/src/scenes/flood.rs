@@ -5,7 +5,7 @@ use corpuscle_scene::{
     Adaptive, Block, Bowl, Bump, Circle, ConstantInfiltration, Culvert, Edge, EdgeLine, EdgePart, Edges, Expression,
     Extent, Field, Finer, Flood, FloodUnits, Friction, Gauge, GreenAmpt, Horton, Infiltration, Inflow, KernelName,
     Link, LinkLaw, Manning, Obstacle, Outflow, Plane, Rain, RoughHills, Scheme, Section, Side, SmoothingForm, SphSwe,
-    Stage, StartVelocity, Storage, Terrain, TimeSteps, Valley, Water, Wave, Weir,
+    Stage, StartVelocity, Storage, Terrain, TimeSteps, Valley, Water, Wave, Weir, us_name,
 };
 
 /// Length and width of the terrain, m.
@@ -75,22 +75,12 @@ fn written(maker: &mut Maker<'_>, until: f64, terrain: &Terrain, flood: &Flood) 
     super::text(maker, until, &[("terrain", terrain), ("flood", &value)])
 }
 
-/// Ends of keys in metres, and in feet.
-const ENDS: [[&str; 2]; 5] = [
-    ["_m3_per_s", "_ft3_per_s"],
-    ["_m_per_s2", "_ft_per_s2"],
-    ["_m_per_s", "_ft_per_s"],
-    ["_mm_per_h", "_in_per_h"],
-    ["_m", "_ft"],
-];
-
 fn name_in_feet(value: &mut toml::Value) {
     match value {
         toml::Value::Table(table) => {
             for (key, mut value) in std::mem::take(table) {
                 name_in_feet(&mut value);
-                let ends = ENDS.iter().find_map(|[si, us]| Some(format!("{}{us}", key.strip_suffix(si)?)));
-                table.insert(ends.unwrap_or(key), value);
+                table.insert(us_name(&key).unwrap_or(key), value);
             }
         }
         toml::Value::Array(items) => items.iter_mut().for_each(name_in_feet),
