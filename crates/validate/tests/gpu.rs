@@ -74,8 +74,12 @@ const SMALL_DEW: [(&str, usize); 5] =
     [("dew/fick", 5), ("dew/film", 2), ("dew/ledger", 7), ("dew/low-utility", 3), ("dew/pane", 6)];
 
 /// Of dew those in which no air takes a step, and what does.
-const WITHOUT_AIR: [(&str, &str); 3] =
-    [("dew/dew-point", "formula"), ("dew/slide", "drops"), ("dew/breath-figures", "drops")];
+const WITHOUT_AIR: [(&str, &str); 4] = [
+    ("dew/dew-point", "formula"),
+    ("dew/slide", "drops"),
+    ("dew/breath-figures", "drops"),
+    ("dew/falling-film", "films"),
+];
 
 /// Below this a bound is of what rounding leaves, of which the GPU leaves more and has bounds of its own.
 const ROUNDING: f64 = 1e-5;
