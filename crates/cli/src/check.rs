@@ -97,7 +97,7 @@ fn fault(error: &anyhow::Error) -> Value {
         Some(corpuscle::Error::Scene(error)) => error.problem(),
         _ => None,
     };
-    let location = problem.and_then(|problem| problem.place.as_ref());
+    let location = problem.and_then(|problem| problem.location.as_ref());
     let in_file = location.filter(|location| location.line.is_some());
     let in_option = location.filter(|location| location.line.is_none());
     json!({

@@ -173,7 +173,7 @@ fn ways_to_look_that_cannot_be_are_refused_in_words() {
         write_photo(&place.path("far.tif"), [500.0, 20.0]);
         refused(["--ground", "far.tif"], "beside the terrain");
         refused(["--ground", "none.tif"], "none.tif");
-        // The lake has no place on Earth.
+        // The lake has no position on Earth.
         refused(["--sun", "2026-06-21T12:00Z"], "--sun 135,40");
     }
 }

@@ -43,7 +43,7 @@ impl Failure {
         Self {
             kind: if error.is_refusal() { "SceneError" } else { "RunError" }.into(),
             key: problem.map(|problem| problem.key.clone()).filter(|key| !key.is_empty()),
-            line: problem.and_then(|problem| problem.place.as_ref()).and_then(|place| place.line),
+            line: problem.and_then(|problem| problem.location.as_ref()).and_then(|location| location.line),
             message,
             remedy,
         }

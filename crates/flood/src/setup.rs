@@ -49,7 +49,7 @@ pub(crate) fn point_gauges(scene: &Flood, terrain: &Terrain) -> Result<Vec<Point
         let at = match (gauge.at, gauge.lon_lat) {
             (Some(at), _) => terrain.to_model(at),
             (None, Some(lon_lat)) => terrain.from_lon_lat(lon_lat).map_err(setup)?,
-            (None, None) => return Err(setup(format!("the gauge '{}' has no place", gauge.name))),
+            (None, None) => return Err(setup(format!("the gauge '{}' has no position", gauge.name))),
         };
         if !terrain.bounds().contains(at[0], at[1]) {
             return Err(setup(format!(

@@ -19,7 +19,7 @@ pub struct ParticleSet {
     pub name: String,
     /// Identity of each particle, lasting over the run.
     pub id: Vec<u64>,
-    /// Place, m.
+    /// Position, m.
     pub position: Vec<[f64; 3]>,
     /// Velocity, m/s.
     pub velocity: Vec<[f64; 3]>,

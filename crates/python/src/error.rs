@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 /// The exception of an error: `corpuscle.SceneError` where the input was refused, `corpuscle.RunError` where an accepted run failed.
 pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
     let class = if error.is_refusal() { "SceneError" } else { "RunError" };
-    raise(py, class, &error.to_string(), place(error)).unwrap_or_else(|failed| failed)
+    raise(py, class, &error.to_string(), location(error)).unwrap_or_else(|failed| failed)
 }
 
 /// A `corpuscle.RunError` with a message.
@@ -22,16 +22,16 @@ pub fn scene_error(py: Python<'_>, message: &str) -> PyErr {
 }
 
 /// The key and the line of a scene that an error names.
-fn place(error: &Error) -> Option<(String, Option<usize>)> {
+fn location(error: &Error) -> Option<(String, Option<usize>)> {
     let Error::Scene(error) = error else { return None };
     let problem = error.problem()?;
-    Some((problem.key.clone(), problem.place.as_ref().and_then(|place| place.line)))
+    Some((problem.key.clone(), problem.location.as_ref().and_then(|location| location.line)))
 }
 
-fn raise(py: Python<'_>, class: &str, message: &str, place: Option<(String, Option<usize>)>) -> PyResult<PyErr> {
+fn raise(py: Python<'_>, class: &str, message: &str, location: Option<(String, Option<usize>)>) -> PyResult<PyErr> {
     let class = py.import("corpuscle._errors")?.getattr(class)?;
     let named = PyDict::new(py);
-    if let Some((key, line)) = place {
+    if let Some((key, line)) = location {
         named.set_item("key", key)?;
         named.set_item("line", line)?;
     }

@@ -1,6 +1,6 @@
 //! The text of a scene as a tree with the position of each value.
 
-use crate::error::{Place, Problem};
+use crate::error::{Location, Problem};
 use crate::nesting::DEEPEST;
 use crate::{TOO_DEEP, old_names, too_deep, units};
 use std::borrow::Cow;
@@ -16,7 +16,7 @@ pub(crate) struct Document<'a> {
     text: &'a str,
     overrides: &'a [(String, String)],
     root: Spanned<DeValue<'a>>,
-    /// What had an old name, in sentences that begin with its place.
+    /// What had an old name, in sentences that begin with its location.
     notes: Vec<String>,
 }
 
@@ -27,11 +27,11 @@ impl<'a> Document<'a> {
         let mut document = Self { name, text, overrides, root, notes: Vec::new() };
         if let Some(span) = too_deep(text) {
             let what = format!("this is not TOML: {TOO_DEEP}");
-            return Err(Box::new(Problem { key: String::new(), what, place: Some(document.place(&span)) }));
+            return Err(Box::new(Problem { key: String::new(), what, location: Some(document.location(&span)) }));
         }
         let table = DeTable::parse(text).map_err(|error| {
             let what = format!("this is not TOML: {}", error.message().trim_end());
-            Box::new(Problem { key: String::new(), what, place: error.span().map(|span| document.place(&span)) })
+            Box::new(Problem { key: String::new(), what, location: error.span().map(|span| document.location(&span)) })
         })?;
         document.root = Spanned::new(table.span(), DeValue::Table(table.into_inner()));
         document.rename_old()?;
@@ -39,10 +39,10 @@ impl<'a> Document<'a> {
         for (path, value) in overrides {
             let span = offset..offset + value.len();
             let (words, note) = old_names::present(path);
-            document.notes.extend(note.map(|note| document.placed(&span, &note)));
+            document.notes.extend(note.map(|note| document.located(&span, &note)));
             set(&mut document.root, path, words, override_value(value, offset)).map_err(|what| {
-                let place = Some(document.place(&span));
-                Box::new(Problem { key: path.clone(), what, place })
+                let location = Some(document.location(&span));
+                Box::new(Problem { key: path.clone(), what, location })
             })?;
             offset += value.len() + 1;
         }
@@ -52,17 +52,17 @@ impl<'a> Document<'a> {
 
     fn rename_old(&mut self) -> Result<(), Box<Problem>> {
         let renamed = old_names::rename(&mut self.root).map_err(|(key, what)| {
-            let place = self.place_of(&key);
-            Box::new(Problem { key, what, place })
+            let location = self.location_of(&key);
+            Box::new(Problem { key, what, location })
         })?;
-        let notes: Vec<_> = renamed.iter().map(|(span, note)| self.placed(span, note)).collect();
+        let notes: Vec<_> = renamed.iter().map(|(span, note)| self.located(span, note)).collect();
         self.notes.extend(notes);
         Ok(())
     }
 
-    /// A note with its place before it.
-    fn placed(&self, span: &Range<usize>, note: &str) -> String {
-        format!("{}: {note}", self.place(span).address())
+    /// A note with its location before it.
+    fn located(&self, span: &Range<usize>, note: &str) -> String {
+        format!("{}: {note}", self.location(span).address())
     }
 
     /// What had an old name, in sentences.
@@ -78,8 +78,8 @@ impl<'a> Document<'a> {
         let written = self.root.clone();
         units::rename(&mut self.root).map_err(|(key, what)| {
             self.root = written;
-            let place = self.place_of(&key);
-            Box::new(Problem { key, what, place })
+            let location = self.location_of(&key);
+            Box::new(Problem { key, what, location })
         })?;
         Ok(true)
     }
@@ -90,12 +90,12 @@ impl<'a> Document<'a> {
     }
 
     /// The file as a whole.
-    pub fn whole(&self) -> Place {
-        Place { source: self.name.to_owned(), line: None, column: 1, width: 0, text: String::new() }
+    pub fn whole(&self) -> Location {
+        Location { source: self.name.to_owned(), line: None, column: 1, width: 0, text: String::new() }
     }
 
     /// Where the value of `key` is written, or the nearest table round it that is written.
-    pub fn place_of(&self, key: &str) -> Option<Place> {
+    pub fn location_of(&self, key: &str) -> Option<Location> {
         let mut node = &self.root;
         for word in key.split('.') {
             match child(node, word) {
@@ -104,7 +104,7 @@ impl<'a> Document<'a> {
             }
         }
         let is_root = std::ptr::eq(node, &self.root);
-        (!is_root).then(|| self.place(&node.span()))
+        (!is_root).then(|| self.location(&node.span()))
     }
 
     /// The path of the first key or item that is written here but not in `values`.
@@ -135,17 +135,17 @@ impl<'a> Document<'a> {
     }
 
     /// The line of the file, or the argument, that holds `span`.
-    pub fn place(&self, span: &Range<usize>) -> Place {
-        if span.start <= self.text.len() { self.place_in_text(span) } else { self.place_in_overrides(span) }
+    pub fn location(&self, span: &Range<usize>) -> Location {
+        if span.start <= self.text.len() { self.location_in_text(span) } else { self.location_in_overrides(span) }
     }
 
-    fn place_in_text(&self, span: &Range<usize>) -> Place {
+    fn location_in_text(&self, span: &Range<usize>) -> Location {
         let bytes = self.text.as_bytes();
         let start = span.start.min(bytes.len());
         let line_start = bytes[..start].iter().rposition(|&b| b == b'\n').map_or(0, |newline| newline + 1);
         let line_end = bytes[start..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |length| start + length);
         let characters = |range: Range<usize>| String::from_utf8_lossy(&bytes[range]).chars().count();
-        Place {
+        Location {
             source: self.name.to_owned(),
             line: Some(1 + bytes[..line_start].iter().filter(|&&b| b == b'\n').count()),
             column: 1 + characters(line_start..start),
@@ -154,14 +154,14 @@ impl<'a> Document<'a> {
         }
     }
 
-    fn place_in_overrides(&self, span: &Range<usize>) -> Place {
+    fn location_in_overrides(&self, span: &Range<usize>) -> Location {
         let mut end = self.text.len() + 1;
         let at_fault = self.overrides.iter().find(|(_, value)| {
             end += value.len() + 1;
             span.start < end
         });
         let text = at_fault.map(|(path, value)| format!("{path}={value}")).unwrap_or_default();
-        Place { source: format!("--set {text}"), line: None, column: 1, width: text.chars().count(), text }
+        Location { source: format!("--set {text}"), line: None, column: 1, width: text.chars().count(), text }
     }
 }
 
@@ -174,7 +174,7 @@ fn override_value(text: &str, offset: usize) -> Spanned<DeValue<'_>> {
     DeValue::parse(text).map_or_else(|_| words(), |value| shifted(value, offset))
 }
 
-/// The same value with all its places moved on by `offset` bytes.
+/// The same value with all its spans moved on by `offset` bytes.
 fn shifted(value: Spanned<DeValue<'_>>, offset: usize) -> Spanned<DeValue<'_>> {
     let moved = |span: Range<usize>| span.start + offset..span.end + offset;
     let span = moved(value.span());
@@ -264,7 +264,7 @@ fn first_missing(node: &Spanned<DeValue<'_>>, value: &Value, path: &str) -> Opti
     }
 }
 
-/// Calls `see` with the path and place of every key and every value below `node`.
+/// Calls `see` with the path and span of every key and every value below `node`.
 fn visit(node: &Spanned<DeValue<'_>>, path: &str, see: &mut impl FnMut(&str, Range<usize>, &DeValue<'_>)) {
     see(path, node.span(), node.get_ref());
     match node.get_ref() {

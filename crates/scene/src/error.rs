@@ -42,7 +42,7 @@ impl SceneError {
     }
 }
 
-/// What is wrong at one place of a scene.
+/// What is wrong at one location of a scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
     /// The key at fault as a path, `flood.gauge.0.name`; rows of tables are counted from 0. Empty for the whole scene.
@@ -50,12 +50,12 @@ pub struct Problem {
     /// What is wrong, and what would be right.
     pub what: String,
     /// Where it is written; none for a scene made in memory.
-    pub place: Option<Place>,
+    pub location: Option<Location>,
 }
 
 impl Problem {
     pub(crate) fn new(key: impl Into<String>, what: impl Into<String>) -> Box<Self> {
-        Box::new(Self { key: key.into(), what: what.into(), place: None })
+        Box::new(Self { key: key.into(), what: what.into(), location: None })
     }
 }
 
@@ -67,20 +67,20 @@ impl From<Box<Problem>> for SceneError {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(place) = &self.place {
-            write!(f, "{}: ", place.address())?;
+        if let Some(location) = &self.location {
+            write!(f, "{}: ", location.address())?;
         }
         if !self.key.is_empty() {
             write!(f, "{}", self.key)?;
         }
         write!(f, "{}", self.what)?;
-        self.place.as_ref().map_or(Ok(()), |place| place.write_marked_line(f))
+        self.location.as_ref().map_or(Ok(()), |location| location.write_marked_line(f))
     }
 }
 
 /// A stretch of one line of a scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// The file's name, or the `--set` argument.
     pub source: String,
     /// Line, counted from 1; none for an argument and for a file as a whole.
@@ -96,7 +96,7 @@ pub struct Place {
 /// Longer lines are not shown: they would hide the message.
 const LONGEST_SHOWN: usize = 160;
 
-impl Place {
+impl Location {
     pub(crate) fn address(&self) -> String {
         match self.line {
             Some(line) => format!("{}:{line}:{}", self.source, self.column),

@@ -31,7 +31,7 @@ mod written;
 pub use builtin::{Builtin, builtin, scenes};
 pub use check::{Check, Checked, is_name};
 pub use dew::Dew;
-pub use error::{Place, Problem, SceneError};
+pub use error::{Location, Problem, SceneError};
 pub use expression::{Expression, ExpressionError};
 pub use files::{open_file, read_bytes, read_text};
 pub use flood::*;

@@ -4,11 +4,11 @@ use std::ops::Range;
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-/// Most lists and tables that are open at one place. The parser's own bound does not hold after an error (toml_parser 1.1.5): it calls itself for each
+/// Most lists and tables that are open at once. The parser's own bound does not hold after an error (toml_parser 1.1.5): it calls itself for each
 /// bracket, until the stack is full.
 pub(crate) const DEEPEST: usize = 80;
 
-/// The first place of a text in TOML that is within 80 lists and tables, as a range of bytes: such a text must not be parsed. A key of several
+/// The first part of a text in TOML that is within 80 lists and tables, as a range of bytes: such a text must not be parsed. A key of several
 /// words is a table for each.
 pub fn too_deep(text: &str) -> Option<Range<usize>> {
     // What closes each list or table that is open, with the dots of its present key; and how deep all that is.
@@ -64,7 +64,7 @@ mod tests {
 
     /// The stack overflowed, in `toml_parser`, at 9,700 tables that are not closed, each with an error in it.
     #[test]
-    fn a_text_that_nests_too_deep_is_refused_with_its_place() {
+    fn a_text_that_nests_too_deep_is_refused_with_its_location() {
         let text = "x = { inflow = { v5.0, y = 0.8, z = [3, 0.0] }\n[dew.faces]\n".repeat(20_000);
         let error = Scene::parse(&text, "deep.toml", &[]).unwrap_err().to_string();
         assert!(error.contains("deep.toml:155") && error.contains("one within the other"), "{error}");

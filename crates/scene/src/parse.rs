@@ -30,16 +30,16 @@ impl Scene {
     }
 
     fn read_document(document: &Document<'_>, in_us: bool) -> Result<Self, Box<Problem>> {
-        let placed = |mut problem: Box<Problem>| {
-            problem.place = document.place_of(&problem.key).or_else(|| Some(document.whole()));
+        let located = |mut problem: Box<Problem>| {
+            problem.location = document.location_of(&problem.key).or_else(|| Some(document.whole()));
             problem
         };
         let mut scene = written::scene(document.root()).map_err(|unread| match unread {
             Unread::Read(ReadError::Type(error)) => explain(&error, document),
-            Unread::Read(ReadError::Problem(problem)) => placed(problem),
-            Unread::Key(key, known) => placed(Problem::new(&*key, unknown_word(&key, &known, true))),
+            Unread::Read(ReadError::Problem(problem)) => located(problem),
+            Unread::Key(key, known) => located(Problem::new(&*key, unknown_word(&key, &known, true))),
         })?;
-        scene.find_problem().and_then(|()| all_was_read(&scene, document)).map_err(placed)?;
+        scene.find_problem().and_then(|()| all_was_read(&scene, document)).map_err(located)?;
         scene.notes = document.notes().to_vec();
         if in_us {
             units::convert(&mut scene, &document.root())?;
@@ -64,13 +64,13 @@ fn explain(error: &toml::de::Error, document: &Document<'_>) -> Box<Problem> {
     let message = error.message().trim_end();
     let span = error.span();
     let key = span.as_ref().map(|span| document.key_at(span)).unwrap_or_default();
-    let place = span.as_ref().map(|span| document.place(span));
+    let location = span.as_ref().map(|span| document.location(span));
     if let Some(rest) = message.strip_prefix("missing field ") {
         let name = words_in_ticks(rest).next().unwrap_or_default();
         let key = span.as_ref().map(|span| document.table_at(span)).unwrap_or_default();
         let path = if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
-        let place = if key.is_empty() { Some(document.whole()) } else { place };
-        return Box::new(Problem { what: format!(" is missing: {}", what_to_give(&path, name)), key: path, place });
+        let location = if key.is_empty() { Some(document.whole()) } else { location };
+        return Box::new(Problem { what: format!(" is missing: {}", what_to_give(&path, name)), key: path, location });
     }
     let unknown = message.strip_prefix("unknown field ").or_else(|| message.strip_prefix("unknown variant "));
     let what = match unknown {
@@ -81,7 +81,7 @@ fn explain(error: &toml::de::Error, document: &Document<'_>) -> Box<Problem> {
         }
         None => wrong_type(message),
     };
-    Box::new(Problem { key, what, place })
+    Box::new(Problem { key, what, location })
 }
 
 /// What to write for a key that is missing.

@@ -316,7 +316,7 @@ fn structures() {
     spoil(&link("weir = { crest_m = 1 }"), &["width_m is missing"]);
     spoil(&link("rating = [[0, 1], [0, 2]]"), &["flood.link.0.law.rating.1", "must rise"]);
     let same = "link = [{ name = \"a\", from = [0, 0], to = [0, 0], law = { weir = { crest_m = 1, width_m = 1 } } }]";
-    spoil(same, &["flood.link.0.to", "another place"]);
+    spoil(same, &["flood.link.0.to", "another position"]);
     spoil("outflow = [{ name = \"river\", at = [1, 1], rating = [[0, 1]] }]", &["flood.outflow.0.name", "is taken by"]);
 }
 

@@ -54,7 +54,7 @@ impl Profile {
             return wrong(format!("it has {} corners; give three or more", corners.len()));
         }
         if let Some(corner) = corners.iter().find(|corner| !corner.iter().all(|x| x.is_finite()) || corner[0] < 0.0) {
-            return wrong(format!("{corner:?} is not a distance of 0 or more and a place, both finite"));
+            return wrong(format!("{corner:?} is not a distance of 0 or more and a height, both finite"));
         }
         corners.dedup();
         if let Some([one, other]) = crossing_edges(&corners) {

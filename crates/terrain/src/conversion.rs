@@ -56,7 +56,7 @@ impl Conversion {
         let mut all: Option<MapBox> = None;
         for position in level.chain(upright) {
             let [x, y] =
-                self.convert(position).map_err(|what| format!("its place {position:?} does not convert: {what}"))?;
+                self.convert(position).map_err(|what| format!("its position {position:?} does not convert: {what}"))?;
             let point = MapBox { west: x, south: y, east: x, north: y };
             all = Some(all.map_or(point, |all| all.with(point)));
         }

@@ -58,7 +58,7 @@ pub enum TerrainError {
     )]
     NoReferenceSystem,
     /// A position that the reference system cannot express.
-    #[error("the place {position:?} cannot be converted to or from longitude and latitude: {what}")]
+    #[error("the position {position:?} cannot be converted to or from longitude and latitude: {what}")]
     Position {
         /// The coordinates given.
         position: [f64; 2],

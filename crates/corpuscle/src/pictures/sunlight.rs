@@ -29,7 +29,7 @@ impl Sun {
     /// The light with the sun there. `azimuth` is where it stands beside the camera, radians from east over north.
     ///
     /// # Errors
-    /// [`Error::Sun`] where the terrain has no place on Earth, or the sun is not above the horizon.
+    /// [`Error::Sun`] where the terrain has no position on Earth, or the sun is not above the horizon.
     pub(super) fn light(self, day: Light, azimuth: f64, terrain: &Terrain) -> Result<Light, Error> {
         let [bearing, height] = match self {
             Self::Beside => return Ok(day.from_azimuth(azimuth)),
@@ -199,7 +199,7 @@ mod tests {
         let towards = high.towards_sun();
         assert!(towards.x > 0.0 && (towards.x + towards.y).abs() < 1e-6);
         assert_eq!(Sun::Beside.light(Light::day(), 0.3, &terrain).unwrap(), Light::day().from_azimuth(0.3));
-        // This terrain has no place on Earth.
+        // This terrain has no position on Earth.
         assert!(light("2026-06-21T12:00Z").unwrap_err().to_string().contains("--sun 135,40"));
         assert!(["135", "135,1", "135,91", "noon"].iter().all(|wrong| Sun::from_str(wrong).is_err()));
     }

@@ -152,7 +152,7 @@ impl Dew {
             self.fastest_position().map_or(String::new(), |position| format!("; the fastest air is {position}"));
         self.broken(format!(
             "the time step fell from {step:.3e} s to {next:.3e} s{position}. Try a higher speed of sound, or look in the last \
-             frame for the place where the air is fast or hot"
+             frame for the position where the air is fast or hot"
         ))
     }
 

@@ -339,7 +339,7 @@ fn laws(scene: &written::Dew, solids: &[Solid]) -> Result<DropLaws, ModelError> 
         None => Ok(with(large_enough(DEFAULT_MAX_SITES))),
         Some(radius) if sites(radius) <= MOST_SITES => Ok(with(radius)),
         Some(radius) => Err(ModelError::Setup(format!(
-            "dew.drops.smallest_radius_m = {radius}: drops could begin at {:.1e} places of the solids, more than the {MOST_SITES:.0e} that can be followed; give {:.1e} or more, or fewer dew.drops.sites_per_m2",
+            "dew.drops.smallest_radius_m = {radius}: drops could begin at {:.1e} positions on the solids, more than the {MOST_SITES:.0e} that can be followed; give {:.1e} or more, or fewer dew.drops.sites_per_m2",
             sites(radius),
             large_enough(MOST_SITES)
         ))),

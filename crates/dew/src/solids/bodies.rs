@@ -91,13 +91,13 @@ pub enum BodyError {
     },
     /// A name of no material.
     #[error(
-        "the solid \"{name}\" (dew.solid.{place}): there is no material \"{material}\"; there are {known}, or give its numbers"
+        "the solid \"{name}\" (dew.solid.{key}): there is no material \"{material}\"; there are {known}, or give its numbers"
     )]
     Material {
         /// Name of the solid.
         name: String,
         /// Where in `dew.solid` of the scene: its row, counted from 0, and the key of a layer behind it.
-        place: String,
+        key: String,
         /// Name of the material.
         material: String,
         /// All that there are.
@@ -317,12 +317,12 @@ fn wine_glass(glass: &dew::WineGlass) -> WineGlass {
     }
 }
 
-/// The material of a solid or of a layer, at `place` in `dew.solid`.
-fn material(place: &str, solid: &str, written: &dew::Material) -> Result<Material, BodyError> {
+/// The material of a solid or of a layer, at `key` in `dew.solid`.
+fn material(key: &str, solid: &str, written: &dew::Material) -> Result<Material, BodyError> {
     match written {
         dew::Material::Named(material) => solids::material(material).copied().ok_or_else(|| BodyError::Material {
             name: solid.into(),
-            place: place.into(),
+            key: key.into(),
             material: material.clone(),
             known: MATERIALS.iter().map(|material| material.name).collect::<Vec<_>>().join(", "),
         }),

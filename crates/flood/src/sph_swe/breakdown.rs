@@ -26,7 +26,9 @@ impl SphSweFlood {
     fn position_of(&self, particle: &Particle) -> String {
         let is_known = |particle: &&Particle| particle.x.is_finite() && particle.y.is_finite();
         let before = || self.state.particles.iter().filter(|before| before.id == particle.id).find(is_known);
-        let Some(known) = Some(particle).filter(is_known).or_else(before) else { return "at an unknown place".into() };
+        let Some(known) = Some(particle).filter(is_known).or_else(before) else {
+            return "at an unknown position".into();
+        };
         let own = self.surroundings.terrain.to_own([known.x, known.y]);
         let [x, y] = own.map(|along| (along * COORDINATE).round() / COORDINATE);
         format!("at x = {x}, y = {y} in the terrain's coordinates")

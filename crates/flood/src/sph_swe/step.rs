@@ -114,7 +114,7 @@ impl SphSweFlood {
         ModelError::Breakdown {
             time: self.state.time,
             step: self.state.steps,
-            what: "a force on the water is no longer a number. Try a smaller flood.sph_swe.time_step_s, or look in the last frame for the place where the water is \
+            what: "a force on the water is no longer a number. Try a smaller flood.sph_swe.time_step_s, or look in the last frame for the position where the water is \
                    fast"
                 .into(),
         }

@@ -5,7 +5,7 @@ use super::{Method, Setup, Side};
 use crate::SetupError;
 use crate::hash::Hash;
 use crate::setup::ball_volume;
-use crate::setup::place::closest;
+use crate::setup::positions::closest;
 
 const AXES: [char; 3] = ['x', 'y', 'z'];
 
@@ -61,7 +61,7 @@ impl<const D: usize> Setup<D> {
             positive(what("radius"), ball.radius)?;
             positive(what("mass"), ball.mass)?;
             for axis in 0..D {
-                number(what("place"), ball.position[axis], true, "a number")?;
+                number(what("position"), ball.position[axis], true, "a number")?;
                 number(what("velocity"), ball.velocity[axis], true, "a number")?;
             }
         }
@@ -145,7 +145,7 @@ impl<const D: usize> Setup<D> {
             return Err(SetupError::Contradiction(text.into()));
         }
         let inside = partition.at > 0.0 && partition.at < self.size[partition.axis];
-        number("the place of the partition", partition.at, inside, "inside the box")?;
+        number("the position of the partition", partition.at, inside, "inside the box")?;
         match &partition.hole {
             Some(hole)
                 if hole.len() != D - 1 || hole.iter().any(|[from, to]| from.is_nan() || to.is_nan() || from >= to) =>

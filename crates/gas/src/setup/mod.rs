@@ -4,7 +4,7 @@ mod check;
 pub(crate) mod file;
 mod lattice;
 mod pistons;
-mod place;
+mod positions;
 mod random;
 mod velocities;
 mod walls;

@@ -1,6 +1,6 @@
 //! Free pistons that carry more energy than the gas can take up, or hardly any mass.
 
-use super::place::closest;
+use super::positions::closest;
 use super::random::Placed;
 use super::{Setup, Side, ball_volume};
 use crate::SetupError;

@@ -3,7 +3,7 @@
 //! Growing is Lubachevsky and Stillinger's (J. Stat. Phys. 60, 1990, 561): balls that start small and move about grow at a constant
 //! rate until they have their radius; the engine handles their collisions.
 
-use super::place::{JAMMED, closest};
+use super::positions::{JAMMED, closest};
 use super::{Setup, ball_volume};
 use crate::SetupError;
 use crate::engine::Engine;

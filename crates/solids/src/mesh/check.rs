@@ -12,7 +12,7 @@ pub(super) fn solid(read: Triangles) -> Result<(Triangles, Vec<String>), String>
     let flat = read.triangles.len() - mesh.triangles.len();
     if flat > 0 {
         notes.push(format!(
-            "{flat} triangles of {} have two corners at one place and were left out",
+            "{flat} triangles of {} have two corners at one position and were left out",
             read.triangles.len()
         ));
     }

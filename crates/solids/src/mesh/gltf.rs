@@ -111,7 +111,7 @@ fn add(primitive: &Primitive, buffers: &[Cow<[u8]>], matrix: &Matrix, found: &mu
     if primitive.mode() != Mode::Triangles {
         return Err(format!("it has {:?}; only triangles are read", primitive.mode()));
     }
-    let positions = primitive.get(&Semantic::Positions).ok_or("it has triangles without places")?;
+    let positions = primitive.get(&Semantic::Positions).ok_or("it has triangles without positions")?;
     refuse_unreadable(&positions, Dimensions::Vec3, &[DataType::F32])?;
     if let Some(indices) = primitive.indices() {
         refuse_unreadable(&indices, Dimensions::Scalar, &[DataType::U8, DataType::U16, DataType::U32])?;

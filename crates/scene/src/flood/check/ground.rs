@@ -106,7 +106,7 @@ impl Check {
     }
 
     pub(super) fn link(&self, key: &str, link: &Link) -> Checked {
-        self.require(&format!("{key}.to"), link.from != link.to, || "must be another place than from".into())?;
+        self.require(&format!("{key}.to"), link.from != link.to, || "must be another position than from".into())?;
         match &link.law {
             LinkLaw::Culvert(culvert) => self.culvert(&format!("{key}.law.culvert"), culvert),
             LinkLaw::Weir(Weir { width_m, coefficient, .. }) => {

@@ -203,7 +203,7 @@ fn profiles(folder: &Path) -> Result<Vec<Row>, ModelError> {
             });
         }
     }
-    let why = "off the beach the exact solution is that of linear waves: 2.1e-3 from the shallow-water equations at one place";
+    let why = "off the beach the exact solution is that of linear waves: 2.1e-3 from the shallow-water equations at one position";
     for (measure, k) in [("profile_order", 1), ("run_up_order", 2)] {
         out.push(Row::beside(BEACH.name, measure, order(found[0][k], found[2][k], 4.0), "", 1.0, why));
     }

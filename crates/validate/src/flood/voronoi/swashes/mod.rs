@@ -52,7 +52,7 @@ const fn solution(
 }
 
 const LEVEL: Option<&str> =
-    Some("the lake is level but for rounding; what is measured is the shore between places of the file");
+    Some("the lake is level but for rounding; what is measured is the shore between positions of the file");
 const STEP: Option<&str> = Some("a shock, and a step that is one spacing wide: an order of 1 at most");
 const DRESSLER: Option<&str> = Some("the solution itself is approximate at its tip");
 
