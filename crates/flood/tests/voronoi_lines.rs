@@ -4,6 +4,8 @@ use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::{Bounds, Terrain};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -43,6 +45,42 @@ fn a_lake_at_rest_stays_at_rest_at_lines() {
         let fastest = flood.wet_cells().map(|cell| cell.velocity[0].hypot(cell.velocity[1])).fold(0.0, f64::max);
         assert!(fastest < 1e-12, "{edge}: {fastest}");
         assert!(flood.wet_cells().all(|cell| (cell.level - 1.0).abs() < 1e-9));
+    }
+}
+
+/// Between two lines as near to each other as the cells are wide a cell has neighbours before and behind it only, nearly in one straight line: how the water
+/// changes across it is then unknown, and small waves must not grow by it. Fifty strips of all directions and widths, seeds and conditions.
+#[test]
+fn waves_in_narrow_strips_between_lines_do_not_grow() {
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    for number in 0..50 {
+        let mut uniform = |from: f64, to: f64| random.random_range(from..to);
+        let (angle, spacing) = (uniform(-0.7, 0.7), uniform(1.0, 2.0));
+        let half = 0.5 * spacing * uniform(0.4, 2.5);
+        let opening = uniform(-0.3, 0.3);
+        let edges = [
+            "{ discharge = 0 }",
+            "{ stage = 1 }",
+            "\"open\"",
+            "{ wave = { rest_level_m = 1, level_m = 1 } }",
+            "\"wall\"",
+        ];
+        let edge = edges[number % edges.len()];
+        let at = |along: f64, side: f64| {
+            let (sin, cos) = angle.sin_cos();
+            let across = side * half * (1.0 + opening * along / 40.0);
+            [33.0 + along * cos - across * sin, 15.0 + along * sin + across * cos]
+        };
+        let lines = [[at(-60.0, 1.0), at(60.0, 1.0)], [at(60.0, -1.0), at(-60.0, -1.0)]];
+        let keys = format!(
+            "spacing_m = {spacing}\nmanning = 0\nwater = [{{ level_m = 1, velocity_m_per_s = [\"0.01 * sin(1.3 * x + 0.7 * y)\", \"0.01 * cos(0.4 * x - y)\"] }}]\n\
+             edge_line = [{{ line = {:?}, edge = {edge} }}, {{ line = {:?}, edge = {edge} }}]",
+            lines[0], lines[1]
+        );
+        let mut flood = flood(&keys, number as u64, |_, _| 0.0).unwrap();
+        go(&mut flood, 20.0);
+        let fastest = flood.wet_cells().map(|cell| cell.velocity[0].hypot(cell.velocity[1])).fold(0.0, f64::max);
+        assert!(fastest < 0.015, "strip {number}, {edge}: {fastest} m/s\n{keys}");
     }
 }
 

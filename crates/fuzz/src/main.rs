@@ -8,10 +8,13 @@ use corpuscle_fuzz::soak::{growth, soak};
 use corpuscle_fuzz::{Target, corpus, targets};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
+use std::num::NonZeroUsize;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 #[derive(Parser)]
@@ -99,6 +102,9 @@ struct Run {
     /// Address space that a worker may have, MiB
     #[arg(long, default_value_t = 8192)]
     address_space_mib: u64,
+    /// Targets that are called at the same time
+    #[arg(long, default_value_t = NonZeroUsize::MIN)]
+    at_once: NonZeroUsize,
     /// Calls the target in this process
     #[arg(long, hide = true)]
     worker: Option<PathBuf>,
@@ -258,33 +264,44 @@ struct Sum {
 }
 
 fn run_all(run: &Run) -> Result<bool, String> {
-    let mut sound = true;
     println!(
         "{:16} {:>12} {:>10} {:>7} {:>9} {:>9} {:>9} failures",
         "target", "executions", "per s", "read %", "outcomes", "MiB", "longest"
     );
-    for target in chosen(&run.targets)? {
-        let (sum, seconds) = run_target(run, &target)?;
-        let rate = sum.executions as f64 / seconds;
-        let read = 100.0 * sum.read as f64 / sum.executions.max(1) as f64;
-        let mib = sum.memory as f64 / f64::from(1 << 20);
-        println!(
-            "{:16} {:>12} {rate:>10.0} {read:>7.1} {:>9} {mib:>9.1} {:>7.2} s {}",
-            target.name, sum.executions, sum.outcomes, sum.longest, sum.failures
-        );
-        if let Some(log) = &run.log {
-            use std::io::Write;
-            let mut file =
-                fs::OpenOptions::new().create(true).append(true).open(log).map_err(|error| error.to_string())?;
-            let line = format!(
-                "{}\t{}\t{seconds:.1}\t{read:.1}\t{}\t{mib:.1}\t{:.3}\t{}",
-                target.name, sum.executions, sum.outcomes, sum.longest, sum.failures
-            );
-            writeln!(file, "{line}").map_err(|error| error.to_string())?;
+    let waiting = Mutex::new(chosen(&run.targets)?.into_iter());
+    let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let lane = || -> Result<bool, String> {
+        let mut is_sound = true;
+        while let Some(target) = next() {
+            let (sum, seconds) = run_target(run, &target)?;
+            report(run, &target, &sum, seconds)?;
+            is_sound &= sum.failures == 0;
         }
-        sound &= sum.failures == 0;
-    }
-    Ok(sound)
+        Ok(is_sound)
+    };
+    thread::scope(|scope| {
+        let lanes: Vec<_> = (0..run.at_once.get()).map(|_| scope.spawn(lane)).collect();
+        let ended = lanes.into_iter().map(|lane| lane.join().map_err(|_| "a lane panicked".to_owned())?);
+        ended.collect::<Result<Vec<_>, _>>().map(|sound| sound.into_iter().all(|is_sound| is_sound))
+    })
+}
+
+/// Prints what came of a target, and adds it to the log.
+fn report(run: &Run, target: &Target, sum: &Sum, seconds: f64) -> Result<(), String> {
+    let rate = sum.executions as f64 / seconds;
+    let read = 100.0 * sum.read as f64 / sum.executions.max(1) as f64;
+    let mib = sum.memory as f64 / f64::from(1 << 20);
+    println!(
+        "{:16} {:>12} {rate:>10.0} {read:>7.1} {:>9} {mib:>9.1} {:>7.2} s {}",
+        target.name, sum.executions, sum.outcomes, sum.longest, sum.failures
+    );
+    let Some(log) = &run.log else { return Ok(()) };
+    let mut file = fs::OpenOptions::new().create(true).append(true).open(log).map_err(|error| error.to_string())?;
+    let line = format!(
+        "{}\t{}\t{seconds:.1}\t{read:.1}\t{}\t{mib:.1}\t{:.3}\t{}\n",
+        target.name, sum.executions, sum.outcomes, sum.longest, sum.failures
+    );
+    file.write_all(line.as_bytes()).map_err(|error| error.to_string())
 }
 
 /// Has workers call a target until its time is over; one that ended before is followed by another.

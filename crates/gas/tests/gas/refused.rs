@@ -22,7 +22,7 @@ fn numbers_that_cannot_be_are_named() {
         (one(at, [0.0; 2], 1.0, 0.0), "mass"),
         (one(at, [0.0; 2], 1.0, -2.0), "mass"),
         (one(at, [f64::INFINITY, 0.0], 1.0, 1.0), "velocity"),
-        (one([f64::NAN, 4.0], [0.0; 2], 1.0, 1.0), "place"),
+        (one([f64::NAN, 4.0], [0.0; 2], 1.0, 1.0), "position"),
         (one(at, [0.0; 2], 1.0, 1.0).restitution(0.0), "restitution"),
         (one(at, [0.0; 2], 1.0, 1.0).gravity([f64::NAN, 0.0]), "gravity"),
         (one(at, [0.0; 2], 1.0, 1.0).side(0, 0, Side::Thermal { temperature: 0.0 }), "temperature"),

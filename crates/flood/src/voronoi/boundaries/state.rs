@@ -13,10 +13,11 @@ pub(crate) fn state(now: Now, at: &AtFace, gravity: f64) -> AtBoundary {
     let celerity = (gravity * at.depth).sqrt();
     let is_supercritical = at.depth > 0.0 && at.across >= celerity;
     let outgoing = at.across + 2.0 * celerity;
+    let inside = Inside { celerity, across: at.across };
     match now {
         Now::Wall => AtBoundary { across: 0.0, ..own },
-        Now::Moving(inwards) => moves(inwards, at.depth, outgoing, gravity),
-        Now::Discharge(inwards) if inwards > 0.0 => comes_in(inwards, outgoing, gravity),
+        Now::Moving(inwards) => moves(inwards, inside, gravity),
+        Now::Discharge(inwards) if inwards > 0.0 => comes_in(inwards, inside, gravity),
         _ if is_supercritical => own,
         Now::Open(level) => {
             let beyond = (gravity * (level - (at.level - at.depth)).max(0.0)).sqrt();
@@ -46,12 +47,62 @@ fn still(outgoing: f64, gravity: f64) -> AtBoundary {
     AtBoundary { depth: depth_of((0.5 * outgoing).max(0.0), gravity), across: 0.0 }
 }
 
+/// The water inside, before a face at which it may become deeper by a bore: where it runs towards the face faster than waves there is no other way, and by
+/// the characteristics it would become hundreds of times too deep.
+#[derive(Clone, Copy)]
+struct Inside {
+    /// Celerity of waves, m/s.
+    celerity: f64,
+    /// Velocity towards the face, m/s.
+    across: f64,
+}
+
+impl Inside {
+    /// The velocity towards the face that it loses, m/s, where a wave changes its celerity to `after`, and the slope of that: a rarefaction where it becomes
+    /// shallower, a bore where it becomes deeper (Toro 2001, section 5.3).
+    fn slowed(self, after: f64) -> (f64, f64) {
+        let before = self.celerity;
+        if after <= before {
+            return (2.0 * (after - before), 2.0);
+        }
+        let mean = (0.5 * (after * after + before * before)).sqrt();
+        let ratio = after / before - before / after;
+        (ratio * mean, (1.0 / before + before / (after * after)) * mean + 0.5 * ratio * after / mean)
+    }
+
+    /// A celerity at least as large as that at which it has lost `by` m/s. A bore needs less depth for it than a smooth wave, and less than where
+    /// the depth before the bore is left out of the force on it.
+    fn at_most(self, by: f64) -> f64 {
+        let without_bore = self.celerity + 0.5 * by;
+        if by <= 0.0 {
+            return without_bore;
+        }
+        without_bore.min((self.celerity * (self.celerity + std::f64::consts::SQRT_2 * by)).sqrt())
+    }
+}
+
+/// The root of a function with its slope by Newton's method.
+fn solve(mut root: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
+    for _ in 0..BOUNDARY_ITERATIONS {
+        let (value, slope) = function(root);
+        root -= value / slope;
+    }
+    root
+}
+
 /// Water before a wall that moves inwards as fast: as fast as the wall, at the level that the wave from inside gives it. A wall that recedes faster than
 /// the water can follow leaves it behind.
-fn moves(inwards: f64, depth: f64, outgoing: f64, gravity: f64) -> AtBoundary {
-    let celerity = 0.5 * (outgoing + inwards);
-    if depth <= 0.0 || celerity <= 0.0 {
+fn moves(inwards: f64, inside: Inside, gravity: f64) -> AtBoundary {
+    let closing = inside.across + inwards;
+    let mut celerity = inside.at_most(closing);
+    if inside.celerity <= 0.0 || celerity <= 0.0 {
         return AtBoundary { depth: 0.0, across: 0.0 };
+    }
+    if closing > 0.0 {
+        celerity = solve(celerity, |celerity| {
+            let (slowed, slope) = inside.slowed(celerity);
+            (slowed - closing, slope)
+        });
     }
     AtBoundary { depth: depth_of(celerity, gravity), across: -inwards }
 }
@@ -76,19 +127,21 @@ fn meets(beyond: f64, drift: f64, is_wet: bool, outgoing: f64, gravity: f64) -> 
     AtBoundary { depth: depth_of(critical, gravity), across: -critical }
 }
 
-/// A discharge inwards, m2/s: c^2 (2c - outgoing) = g q where that flow is slower than waves, critical depth where it is not.
-fn comes_in(discharge: f64, outgoing: f64, gravity: f64) -> AtBoundary {
+/// A discharge inwards, m2/s: the water inside loses its velocity to that of what comes in, where that flow is slower than waves; critical depth where it is not.
+fn comes_in(discharge: f64, inside: Inside, gravity: f64) -> AtBoundary {
     let target = gravity * discharge;
     let critical = target.cbrt();
-    let mut celerity = critical.max(outgoing);
-    for _ in 0..BOUNDARY_ITERATIONS {
-        let value = celerity * celerity * (2.0 * celerity - outgoing) - target;
-        let slope = celerity * (6.0 * celerity - 2.0 * outgoing);
-        celerity -= value / slope;
-    }
-    if celerity >= outgoing {
-        celerity = critical;
-    }
+    // What comes in at this celerity less the discharge, times gravity.
+    let excess = |celerity: f64| {
+        let (slowed, slope) = inside.slowed(celerity);
+        let inwards = slowed - inside.across;
+        (celerity * celerity * inwards - target, celerity * (2.0 * inwards + celerity * slope))
+    };
+    let celerity = if inside.celerity <= 0.0 || excess(critical).0 >= 0.0 {
+        critical
+    } else {
+        solve(inside.at_most(inside.across + critical), excess)
+    };
     AtBoundary { depth: depth_of(celerity, gravity), across: -target / (celerity * celerity) }
 }
 
@@ -184,26 +237,58 @@ mod tests {
         }
     }
 
-    /// The discharge is met, and the outgoing characteristic where the flow is slower than waves.
+    /// How far the step from `before` to the water at the face is from a bore that keeps volume and momentum (Rankine & Hugoniot), or, where the water gets
+    /// shallower, from a rarefaction that keeps u + 2c; over the celerity.
+    fn off_the_wave(before: &AtFace, found: &AtBoundary) -> f64 {
+        let celerity = (G * before.depth).sqrt();
+        if found.depth <= before.depth {
+            let kept = found.across + 2.0 * (G * found.depth).sqrt() - before.across - 2.0 * celerity;
+            return kept.abs() / celerity;
+        }
+        let flux = |depth: f64, across: f64| [depth * across, depth * across * across + 0.5 * G * depth * depth];
+        let ([volume, thrust], [volume_after, thrust_after]) =
+            (flux(before.depth, before.across), flux(found.depth, found.across));
+        let speed = (volume_after - volume) / (found.depth - before.depth);
+        (thrust_after - thrust - speed * (volume_after - volume)).abs() / (thrust_after + thrust)
+    }
+
+    /// The discharge is met, and the wave that brings the water inside to it where the flow is slower than waves: also against water that runs towards the
+    /// face faster than waves, where without a bore it would become hundreds of times too deep.
     #[test]
     fn discharges_are_met_in_both_directions() {
-        for (discharge, before) in
-            [(0.3, at(1.0, -0.2)), (0.3, at(0.0, 0.0)), (8.0, at(0.5, 0.0)), (-0.4, at(1.0, 0.1))]
-        {
+        for (discharge, before) in [
+            (0.3, at(1.0, -0.2)),
+            (0.3, at(0.0, 0.0)),
+            (8.0, at(0.5, 0.0)),
+            (0.2, at(0.03, 60.0)),
+            (0.2, at(1e-9, 3.0)),
+            (3.0, at(0.4, 2.5)),
+            (-0.4, at(1.0, 0.1)),
+        ] {
             let found = state(Now::Discharge(discharge), &before, G);
             assert!((found.depth * found.across + discharge).abs() < 1e-9, "{discharge}: {found:?}");
-            let celerity = (G * found.depth).sqrt();
-            let outgoing = before.across + 2.0 * (G * before.depth).sqrt();
-            let is_critical = (found.across.abs() / celerity - 1.0).abs() < 1e-9;
-            assert!(is_critical || (found.across + 2.0 * celerity - outgoing).abs() < 1e-9, "{found:?}");
+            let is_critical = (found.across.abs() / (G * found.depth).sqrt() - 1.0).abs() < 1e-9;
+            assert!(is_critical || off_the_wave(&before, &found) < 1e-9, "{discharge} {before:?}: {found:?}");
         }
+    }
+
+    /// Water of 3 cm that runs into a wall with 60 m/s stands 4.7 m deep before it: by a wave without a jump it would be 95 m.
+    #[test]
+    fn water_that_runs_into_a_wall_makes_a_bore() {
+        for (inwards, before) in [(0.0, at(0.03, 60.0)), (0.0, at(1.0, 2.0)), (3.0, at(0.5, 0.0)), (5.0, at(1e-6, 0.0))]
+        {
+            let found = state(Now::Moving(inwards), &before, G);
+            assert!(found.across == -inwards && off_the_wave(&before, &found) < 1e-12, "{before:?}: {found:?}");
+        }
+        let found = state(Now::Moving(0.0), &at(0.03, 60.0), G);
+        assert!((found.depth - 4.7).abs() < 0.1, "{found:?}");
     }
 
     #[test]
     fn water_before_a_moving_wall_is_as_fast_as_the_wall() {
         let still = at(2.0, 0.0);
         let celerity = (G * 2.0_f64).sqrt();
-        for inwards in [-0.3, 0.0, 0.2] {
+        for inwards in [-0.3, 0.0] {
             let found = state(Now::Moving(inwards), &still, G);
             let exact = (celerity + 0.5 * inwards).powi(2) / G;
             assert!((found.depth - exact).abs() < 1e-12 && found.across == -inwards, "{found:?}");

@@ -76,17 +76,40 @@ fn level_beyond(at: AtFace, outgoing: f32, level: f32, drift: f32, ground_level:
     return found;
 }
 
-// A discharge inwards: c^2 (2c - outgoing) = g q where that flow is slower than waves, critical depth where it is not.
-fn comes_in(discharge: f32, outgoing: f32) -> vec2f {
-    let wanted = parameters.gravity * discharge;
-    let slowest = pow(wanted, 1.0 / 3.0);
-    var celerity = max(slowest, outgoing);
-    for (var k = 0u; k < BOUNDARY_ITERATIONS_ON_GPU; k++) {
-        let value = celerity * celerity * (2.0 * celerity - outgoing) - wanted;
-        celerity -= value / (celerity * (6.0 * celerity - 2.0 * outgoing));
+// The velocity towards the face that water loses where a wave changes its celerity from `before` to `after`, and the slope of that: see `Inside` of
+// `boundaries/state.rs`.
+fn slowed(before: f32, after: f32) -> vec2f {
+    if after <= before {
+        return vec2f(2.0 * (after - before), 2.0);
     }
-    if celerity >= outgoing {
-        celerity = slowest;
+    let mean = sqrt(0.5 * (after * after + before * before));
+    let ratio = (after - before) * (after + before) / (after * before);
+    return vec2f(ratio * mean, (1.0 / before + before / (after * after)) * mean + 0.5 * ratio * after / mean);
+}
+
+// A celerity at least as large as that at which it has lost `by`.
+fn at_most(before: f32, by: f32) -> f32 {
+    let without_bore = before + 0.5 * by;
+    return select(without_bore, min(without_bore, sqrt(before * (before + sqrt(2.0) * max(by, 0.0)))), by > 0.0);
+}
+
+// What comes in at a celerity less the discharge, times gravity, and the slope of that.
+fn excess(before: f32, across: f32, celerity: f32, wanted: f32) -> vec2f {
+    let found = slowed(before, celerity);
+    let inwards = found.x - across;
+    return vec2f(celerity * celerity * inwards - wanted, celerity * (2.0 * inwards + celerity * found.y));
+}
+
+// A discharge inwards: the water inside loses its velocity to that of what comes in, where that flow is slower than waves; critical depth where it is not.
+fn comes_in(discharge: f32, before: f32, across: f32) -> vec2f {
+    let wanted = parameters.gravity * discharge;
+    var celerity = pow(wanted, 1.0 / 3.0);
+    if before > 0.0 && excess(before, across, celerity, wanted).x < 0.0 {
+        celerity = at_most(before, across + celerity);
+        for (var k = 0u; k < BOUNDARY_ITERATIONS_ON_GPU; k++) {
+            let found = excess(before, across, celerity, wanted);
+            celerity -= found.x / found.y;
+        }
     }
     return vec2f(celerity, -wanted / (celerity * celerity));
 }
@@ -133,10 +156,17 @@ fn normal_flow(factor: f32, outgoing: f32) -> vec2f {
 }
 
 // Water before a wall that moves inwards: as fast as the wall, unless the wall leaves it behind.
-fn before_paddle(inwards: f32, depth: f32, outgoing: f32) -> vec2f {
-    let celerity = 0.5 * (outgoing + inwards);
-    if depth <= 0.0 || celerity <= 0.0 {
+fn before_paddle(inwards: f32, before: f32, across: f32) -> vec2f {
+    let closing = across + inwards;
+    var celerity = at_most(before, closing);
+    if before <= 0.0 || celerity <= 0.0 {
         return vec2f(0.0);
+    }
+    if closing > 0.0 {
+        for (var k = 0u; k < BOUNDARY_ITERATIONS_ON_GPU; k++) {
+            let found = slowed(before, celerity);
+            celerity -= (found.x - closing) / found.y;
+        }
     }
     return vec2f(celerity, -inwards);
 }
@@ -171,10 +201,10 @@ fn state_of(border: Border, known: f32, at: AtFace) -> vec2f {
     let celerity = sqrt(parameters.gravity * at.depth);
     let outgoing = at.across + 2.0 * celerity;
     if border.kind == PADDLE {
-        return before_paddle(in_step(border.table, MEAN), at.depth, outgoing);
+        return before_paddle(in_step(border.table, MEAN), celerity, at.across);
     }
     if border.kind == DISCHARGE && known > 0.0 {
-        return comes_in(known, outgoing);
+        return comes_in(known, celerity, at.across);
     }
     if at.depth > 0.0 && at.across >= celerity {
         return vec2f(celerity, at.across);
