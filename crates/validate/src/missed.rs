@@ -19,6 +19,8 @@ const MISSED: &[(&str, &str, f64)] = &[
     ("flood/voronoi/invariance", "difference_when_turned", 0.07),
     // The thin water that runs down is half a cell behind, and off the beach the exact solution is linear.
     ("flood/voronoi/beach", "farthest_profile_error_005d", 6e-3),
+    // The water is so shallow that nearly all blocks become fine: 1785 of 1851 cells at the start, all of them after a period.
+    ("flood/voronoi/adaptive", "bowl_work_over_4cm", 0.97),
     // Without friction broken waves run up 72 % too high at a height of 0.19; at n = 0.01 too low by this, at finer spacings too.
     ("flood/voronoi/run-up", "run_up_error_height_009", 0.09),
     ("flood/voronoi/run-up", "run_up_error_height_019", 0.09),
