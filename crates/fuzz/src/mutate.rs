@@ -126,6 +126,7 @@ impl Mutator {
                 (false, true) => self.change_text(&mut input, random),
                 (false, false) => self.change_fields(&mut input, random),
             }
+            input.truncate(LARGE);
         }
         let longest = LONGEST.max(4 * self.pool[0].len());
         if random.chance(LARGE_PART) {
@@ -205,6 +206,7 @@ impl Mutator {
                 let (from, to) = *random.one_of(&lines);
                 let line = input[from..to].to_vec();
                 let times = if random.chance(0.9) { 1 } else { random.below(200) };
+                let times = times.min(LARGE / line.len().max(1));
                 let start = random.one_of(&lines).0;
                 input.splice(start..start, line.repeat(times));
             }

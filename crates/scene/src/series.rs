@@ -49,7 +49,14 @@ impl Series {
                 check_rows(rows).map_err(error)?;
                 Ok(Table { rows: rows.clone() })
             }
-            Self::File { csv, factor } => Ok(read_csv(&folder.join(csv))?.times(*factor)),
+            Self::File { csv, factor } => {
+                let file = folder.join(csv);
+                let table = read_csv(&file)?.times(*factor);
+                let error =
+                    |(_, what)| SceneError::Series { file, line: None, what: format!("times {factor:e}: {what}") };
+                check_rows(&table.rows).map_err(error)?;
+                Ok(table)
+            }
         }
     }
 }
@@ -155,6 +162,9 @@ fn between(before: [f64; 2], after: [f64; 2], t: f64) -> f64 {
     before[1] + part * (after[1] - before[1])
 }
 
+/// Times and values beyond this are refused: differences and products of larger ones may not be finite.
+const LARGEST: f64 = 1e100;
+
 /// Finds the first invalid row; returns its index and the reason.
 pub(crate) fn check_rows(rows: &[[f64; 2]]) -> Result<(), (usize, String)> {
     if rows.is_empty() {
@@ -163,6 +173,9 @@ pub(crate) fn check_rows(rows: &[[f64; 2]]) -> Result<(), (usize, String)> {
     for (index, [time, value]) in rows.iter().enumerate() {
         if !time.is_finite() || !value.is_finite() {
             return Err((index, format!("time {time} and value {value} must be finite numbers")));
+        }
+        if time.abs() > LARGEST || value.abs() > LARGEST {
+            return Err((index, format!("time {time:e} and value {value:e} must be at most {LARGEST:e}")));
         }
         if index > 0 && rows[index - 1][0] > *time {
             let before = rows[index - 1][0];
@@ -246,6 +259,19 @@ mod tests {
         let q = load_csv("\u{feff}time_s,discharge_m3_per_s\r\nseconds,1200\r\n0,0\r\n300,6\r\n\r\n").unwrap();
         assert_eq!(q.rows(), [[0.0, 0.0], [300.0, 6.0]]);
         assert_eq!(load_csv("# peak flow\n0;1\n5;2\n").unwrap().rows(), [[0.0, 1.0], [5.0, 2.0]]);
+    }
+
+    /// Between two such values the difference would be infinite.
+    #[test]
+    fn values_too_large_to_be_subtracted_are_refused() {
+        for rows in ["-1 1e308\n0 -1e308", "-1e308 1\n1e308 2"] {
+            let error = load_csv(&rows.replace(' ', "\t")).unwrap_err().to_string();
+            assert!(error.contains("1e100"), "{error}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("q.csv"), "0,1e99\n").unwrap();
+        let error = Series::File { csv: "q.csv".into(), factor: 1e300 }.load(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("q.csv") && error.contains("times 1e300"), "{error}");
     }
 
     #[test]

@@ -222,6 +222,9 @@ impl Model for VoronoiFlood {
         {
             return Err(other());
         }
+        if !shown.is_finite() || !state.is_finite() {
+            return Err(refused("it holds a value that is not a number".into()));
+        }
         // The tiles that a model without water has made come first, and in any state of this scene too.
         let made = self.tiles().len().min(state.tiles.len());
         if self.tiles()[..made] != state.tiles[..made] || self.tiles().len() > state.tiles.len() {

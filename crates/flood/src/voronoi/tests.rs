@@ -304,6 +304,29 @@ fn a_held_level_floods_land_with_a_film_on_it() {
     }
 }
 
+/// A state with a value that no computation gives is refused before anything is looked at.
+#[test]
+fn forged_states_with_values_that_are_no_numbers_are_refused() {
+    let scene = "run.until_s = 10\nterrain.plane.extent = { length_m = 60, width_m = 60, cell_m = 5 }\n[flood]\n\
+                 spacing_m = 3\nwater = [{ depth_m = 1, polygon = [[0, 0], [20, 0], [20, 20], [0, 20]] }]";
+    let mut flood = flood(scene, 1);
+    let saved = flood.save();
+    let forged: [fn(&mut State); 5] = [
+        |state| state.columns[0][3].volume = f64::NAN,
+        |state| state.columns[1][3].momentum[1] = f64::INFINITY,
+        |state| state.columns[0][5].volume = 1e200,
+        |state| state.time_step = f64::NAN,
+        |state| state.beyond[0] = f64::NAN,
+    ];
+    for (number, forge) in forged.into_iter().enumerate() {
+        let (shown, mut state): (f64, State) = postcard::from_bytes(&saved).unwrap();
+        forge(&mut state);
+        let error = flood.restore(&postcard::to_stdvec(&(shown, state)).unwrap()).unwrap_err();
+        assert!(error.to_string().contains("not a number"), "{number}: {error}");
+    }
+    flood.restore(&saved).unwrap();
+}
+
 /// A state that lists all tiles of the ground, or one of them twice, with next to no cells.
 #[test]
 fn forged_states_are_refused_before_their_cells_are_made() {

@@ -20,6 +20,9 @@ pub(in super::super) struct Counts {
     pub borders: u32,
 }
 
+/// Values of a state beyond this are refused.
+const LARGEST: f64 = 1e100;
+
 impl State {
     /// Whether its tiles are different ones of `tiles`, and its lists as long as these tiles and so many obstacles need.
     pub(in super::super) fn is_consistent(&self, tiles: usize, obstacles: usize) -> bool {
@@ -36,6 +39,20 @@ impl State {
             && (soaked == 0 || soaked as u64 == cells)
             && [&self.impulses, &self.forces].iter().all(|of| of.len() == obstacles)
             && self.tiles.iter().all(&mut is_new)
+    }
+
+    /// Whether all that steps begin with are numbers whose squares are numbers too.
+    pub(in super::super) fn is_finite(&self) -> bool {
+        let is_number = |value: f64| value.abs() < LARGEST;
+        let columns = self.columns.iter().flatten();
+        let falling = self.falling.iter();
+        [self.time, self.before, self.time_step].into_iter().all(is_number)
+            && columns.flat_map(|column| [column.volume, column.momentum[0], column.momentum[1]]).all(is_number)
+            && self.beyond.iter().all(|beyond| !beyond.is_nan() && *beyond < LARGEST)
+            && self.soaked.depth.iter().copied().map(f64::from).all(is_number)
+            && falling
+                .flat_map(|drop| drop.position.into_iter().chain(drop.velocity).chain([drop.volume]))
+                .all(is_number)
     }
 }
 
