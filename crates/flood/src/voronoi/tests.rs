@@ -311,7 +311,8 @@ fn forged_states_with_values_that_are_no_numbers_are_refused() {
                  spacing_m = 3\nwater = [{ depth_m = 1, polygon = [[0, 0], [20, 0], [20, 20], [0, 20]] }]";
     let mut flood = flood(scene, 1);
     let saved = flood.save();
-    let forged: [fn(&mut State); 5] = [
+    let forged: [fn(&mut State); 6] = [
+        |state| state.records[3].max_depth = f32::NAN,
         |state| state.columns[0][3].volume = f64::NAN,
         |state| state.columns[1][3].momentum[1] = f64::INFINITY,
         |state| state.columns[0][5].volume = 1e200,

@@ -45,9 +45,12 @@ impl State {
     pub(in super::super) fn is_finite(&self) -> bool {
         let is_number = |value: f64| value.abs() < LARGEST;
         let columns = self.columns.iter().flatten();
+        // A cell that was never wet has no arrival.
+        let record = |of: &Record| [of.max_depth, of.fastest[0], of.fastest[1], of.hazard, of.duration];
         let falling = self.falling.iter();
         [self.time, self.before, self.time_step].into_iter().all(is_number)
             && columns.flat_map(|column| [column.volume, column.momentum[0], column.momentum[1]]).all(is_number)
+            && self.records.iter().flat_map(record).all(f32::is_finite)
             && self.beyond.iter().all(|beyond| !beyond.is_nan() && *beyond < LARGEST)
             && self.soaked.depth.iter().copied().map(f64::from).all(is_number)
             && falling
