@@ -100,7 +100,7 @@ fn malpasset_has_the_same_bytes() {
 
 #[test]
 fn a_pane_has_the_same_bytes() {
-    same_on_all(&["dew/pane", "--until", "2"], &ALL);
+    same_on_all(&["dew/pane", "--until", "4"], &ALL);
 }
 
 /// A dam break that takes long enough to be interrupted, with checkpoints all the while.
